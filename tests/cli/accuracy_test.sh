@@ -3,7 +3,6 @@
 # Wanted accuracy, steady motion and methods with events on the crawler, against an independent
 # program: its RK4 with located events at 5 us and its fifth-order pair agree on these to 0.02 %.
 . "$(dirname "$0")/lib.sh"
-crawler=$here/../../models/crawler/crawler.yaml
 
 # about FILTER WANTED PART: of the JSON in out, within PART of WANTED
 about() { near "$1 / $2" 1 "$3"; }
@@ -93,7 +92,7 @@ expect 0 run "$crawler" --set frequency="1.1 Hz" --steady 0.1% --integrator adap
   --tolerance 1e-7 --step "2 ms" --json
 near .velocity "${wanted% *}" "0.005 * ${wanted#* }"
 # Stiff members and slow motion, no ground: implicit midpoint, far above the explicit limit.
-moves -2.068963889494835 0.001 "$here/../../models/basics/pendulum.yaml" --set stiffness="1e12 N/m" --accuracy 0.1%
+moves -2.068963889494835 0.001 "$models/basics/pendulum.yaml" --set stiffness="1e12 N/m" --accuracy 0.1%
 holds '.method == "midpoint" and .accuracy.kept and .accuracy.expected <= 0.001'
 # verlet's largest stable step is 1.1 us here, which 2.3e6 evaluations go through
 holds '.force_evaluations + .accuracy.check_evaluations < 40000'
@@ -148,7 +147,7 @@ sed 's/settle: true/settle: false/' "$here/oblique-x.yaml" >thrown.yaml
 sed 's/steady: true/steady: true, quantities: {up: {of: c.y, take: max}}/' thrown.yaml >up.yaml
 # A crawler that falls over ends on either of two sides: the runs that a tolerance of 1e-12 agrees with tell which. And
 # a correction that carries twice its estimate is no reason to state less than that (crawler with stops).
-cp "$here"/../../models/crawler/*.yaml "$here/../../models/topologies/nine-member.yaml" .
+cp "$models"/crawler/*.yaml "$models/topologies/nine-member.yaml" .
 yaml tilted.yaml <<END
 base: stops.yaml
 gravity: [-0.07457, -9.8]
@@ -170,7 +169,7 @@ done <<END
 -0.0140806942 tilted 1% frequency=26.62Hz amplitude=0.329mm friction=0.288 start=I stop=63.63mm
 END
 # Two runs with error control agreed by chance four times better than with the exact one, 7.475 uJ.
-cp "$here/../../models/topologies/jib.yaml" .
+cp "$models/topologies/jib.yaml" .
 yaml rubs.yaml <<END
 base: jib.yaml
 run: {periods: 100, measure: {last: 20, steady: false, quantities: {rub: {of: losses.friction, take: change}}}}
@@ -180,14 +179,14 @@ near .measured.rub.value 7.47499e-6 .measured.rub.expected
 # The start alone is repeated, not the run: each of the first three took three times as many evaluations.
 finds '.force_evaluations + .accuracy.check_evaluations < 300000' run thrown.yaml --accuracy 1%
 # Rigid bars, which one method takes: at 5/4 of its period the rod hangs, having been level at one.
-sed 's/^nodes:/bars: rigid\nnodes:/' "$here/../../models/basics/pendulum.yaml" >rod.yaml
+sed 's/^nodes:/bars: rigid\nnodes:/' "$models/basics/pendulum.yaml" >rod.yaml
 moves -2.068963889494835 1e-6 rod.yaml --accuracy 0.01% # 4 length / period
 holds '.method == "rk4" and .accuracy.kept'
 # and that no method takes together with exact friction
 edit 's/^nodes:/bars: rigid\nnodes:/; s/law: karnopp/law: coulomb/' "$crawler" tells 1 "no method supports both" run --accuracy 1%
 # Exact friction: speed^2 / (2 mu g) in a second.
 sed 's/law: karnopp/law: coulomb/; s/, stick_velocity: [^}]*//' \
-  "$here/../../models/basics/sliding-block.yaml" >block.yaml
+  "$models/basics/sliding-block.yaml" >block.yaml
 moves 0.2548419979 1e-6 block.yaml --accuracy 0.1%
 # All steps count, those of corrections too: every one of them took one evaluation or more.
 expect 0 run "$crawler" --set friction=0.2 --accuracy 0.1% --json

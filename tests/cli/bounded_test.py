@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What a scene asks for is done soon, or refused by name at once: long profiles, runs that would not end, samples beyond
 # the run, and structures at rest; and what killed processes leave goes, and hidden characters do not act on the terminal.
+import itertools
 import json
 import math
 import os
@@ -8,11 +9,9 @@ import pty
 import random
 import re
 import resource
-import signal
 import subprocess
-import time
 
-from testing import check, files_in, finish, strut, work, write
+from testing import check, files_in, finish, stopped, strut, work, write
 
 
 def run(*words, code=0):
@@ -101,14 +100,9 @@ def killed():
           "run: {duration: 1000 s}\noutput: {every: 1 ms, channels: [position]}\n")
     write("brief.yaml", MASS.replace("STIFFNESS", "100 N/m") + "solver: {integrator: rk4, step: 1 ms}\n"
           "run: {duration: 1 s}\n")
-    process = subprocess.Popen([strut, "run", "long.yaml", "-o", "killed", "--quiet"], cwd=work)
-    folder = os.path.join(work, "killed")
-    begun = time.monotonic()
-    while not (os.path.isdir(folder) and os.listdir(folder)) and time.monotonic() - begun < 60:
-        time.sleep(0.02)
-    time.sleep(0.2)
-    process.send_signal(signal.SIGKILL)
-    process.wait()
+    folder, looks = os.path.join(work, "killed"), itertools.count()  # 0.2 s of them
+    stopped("run", "long.yaml", "-o", "killed", "--quiet",
+            after=lambda: os.path.isdir(folder) and os.listdir(folder) and next(looks) > 100)
     check(any(name.startswith(".strut-stage") for name in os.listdir(folder)), "there is no stage")
     run("run", "brief.yaml", "-o", "killed", "--quiet")
     left = [name for name in files_in(folder) if name.startswith(".") or ".strut-" in name]

@@ -1,9 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Completion: what strut offers for a command line, and the script in bash itself.
-models=$(realpath "$2")
-script=$(realpath "$3")
 . "$(dirname "$0")/lib.sh"
+script=$root/parser/program/strut.bash
 cp -R "$models" models
 crawler=models/crawler/crawler.yaml
 

@@ -154,6 +154,9 @@ END
 gives '.modes[0].eigenvalue' 5.32166666666667 1e-9 modes pendulum.yaml
 near '.modes[0].damping_ratio' 0.00180614 1e-7
 holds '(.modes[0].description | test("h 100 % of the energy")) and .modes[0].error < 1e-10'
+shows 0 geometric modes pendulum.yaml
+edit '/^gravity/d' pendulum.yaml shows 0 "h 100 % of the energy" modes
+out_has_not geometric
 finds '[.equilibria[] | select(.label == "stable")] | length == 1' equilibria pendulum.yaml
 
 # ---- equilibria: the tension of a running cable, and a hinge that prefers one side ----

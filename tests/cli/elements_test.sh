@@ -30,9 +30,6 @@ near '[.equilibria[] | select(.label == "saddle")][0].nodes.b[0]' 0.5 1e-6
 near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .nodes.b as $b | atan2($b[1] | fabs; $b[0]) as $angle |
   [2 * 2 * $angle / (0.5 * ($angle | sin)), .congruent_copies]' '[10, 2]' '1e-5'
 
-# By path the straight shape bifurcates there.
-gives '[.events[] | select(.kind == "bifurcation")][0].factor' 0.8 1e-5 path links.yaml --load press --until 1.5
-
 # Hencky's chain of n links: the lowest stiffness falls to zero at 4 n^2 sin^2(pi / 2n) EI / L^2, as a
 # line of the load.
 chain() {
@@ -51,19 +48,6 @@ for n in 2 3 8; do
   chain $n 0.99 >chain.yaml
   gives "(.modes[0].eigenvalue) as \$most | (0.99 * $half - 0.5 * \$most) / ($half - \$most)" 1 1e-6 modes chain.yaml
 done
-
-# A pendulum with a hinge: omega^2 = kappa / (m l^2) + g / l.
-yaml pendulum.yaml <<'END'
-nodes: {top: {position: [0, 1], fixed: both}, pivot: {position: [0, 0], fixed: both},
-        bob: {position: [0, -0.5], mass: 2}}
-members: {rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e9}}
-hinges: {h: {nodes: [top, pivot, bob], stiffness: 3, rest_angle: 180 deg}}
-gravity: [0, -9.81]
-END
-gives '.modes[0].angular_frequency' '(3 / (2 * 0.25) + 9.81 / 0.5) | sqrt' 1e-6 modes pendulum.yaml
-out_has "geometric"
-edit '/gravity/d' pendulum.yaml shows 0 "h 100 % of the energy" modes
-out_has_not "geometric"
 
 # A cantilever of four links and hinges under a couple: every hinge turns by the same angle M / kappa,
 # with M = 2 a F cos(tip), as the forces keep their directions.

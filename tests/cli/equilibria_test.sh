@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # strut equilibria as people meet it: the crawler's report, files, options, bad input, determinism.
 . "$(dirname "$0")/lib.sh"
-crawler=$here/../../models/crawler/crawler.yaml
 
 # First what stands and its barriers, then counts; --all has every row. Shapes are told apart.
 expect 0 equilibria "$crawler"
@@ -17,7 +16,7 @@ expect 0 equilibria "$crawler" --all --starts 60
 out_has "tips over n4 onto n2 and n4: II" "below ground (" "presses with" "held-n1-n2-1 " "III, III-2"
 
 # Numbers in names grow with the energy, and so does the list.
-expect 0 equilibria "$here/../../models/basics/von-mises-truss.yaml" --json
+expect 0 equilibria "$models/basics/von-mises-truss.yaml" --json
 holds '[.equilibria[] | select(.outcome == "stands") | .energy] | . == sort and .[0] < .[1]'
 [ "$(jq -c '[.equilibria[] | select(.outcome == "stands")] | sort_by(.energy) | map(.name)' out)" = \
   '["equilibrium-1","equilibrium-2"]' ] || fail "names are not in the order of the energy"

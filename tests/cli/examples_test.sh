@@ -1,7 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copies of the models that come with strut.
-models=$(realpath "$2")
 . "$(dirname "$0")/lib.sh"
 
 shows 0 "robot.yaml" examples robot

@@ -3,8 +3,7 @@
 # Other models of a scene by options give what the same words in the file give; what cannot be run
 # together is refused by run and check alike.
 . "$(dirname "$0")/lib.sh"
-crawler=$here/../../models/crawler/crawler.yaml
-rod=$here/../../models/basics/pendulum.yaml
+rod=$models/basics/pendulum.yaml
 
 # same_run OPTIONS FILE MODEL: MODEL with the options runs as FILE without
 same_run() {

@@ -13,7 +13,7 @@ import random
 import subprocess
 import sys
 
-from testing import answer, check, finish, models, near, path, read, rows, run, strut, work, write
+from testing import answer, check, finish, models, near, path, read, rows, run, stopped, strut, work, write
 
 
 def fit(name, study, code=0, err=""):
@@ -23,11 +23,26 @@ def fit(name, study, code=0, err=""):
     return {p["parameter"]: p for p in said.get("parameters", [])}, said
 
 
-def identified(found, name, truth, errors=3.0):
-    p = found[name]
-    check(p["verdict"] == "identified", f"{name}: {p['verdict']}")
-    check(abs(p["value"] - truth) <= errors * p["standard_error"], f"{name}: {p}, not {truth}")
-    check(p["low"] < p["value"] < p["high"], f"{name}: {p}")
+def study(model, data, over, match, starts=2):
+    """One film or table `d`, with its time."""
+    return (f"model: {model}.yaml\ndata: {{d: {{file: {data}.csv}}}}\nfit:\n  over: {{{over}}}\n"
+            f"  match: {{d: {{time: d.t, {match}}}}}\n  starts: {starts}\n")
+
+
+def mass_on_spring(name, parameters, place, mass, spring, more):
+    write(f"{name}.yaml", f"""strut: 1
+parameters: {{{parameters}}}
+nodes: {{a: {{position: [0, 0], fixed: both}}, b: {{position: [{place}, 0], mass: {mass}, fixed: y}}}}
+members: {{s: {{kind: spring, nodes: [a, b], {spring}}}}}
+{more}""")
+
+
+def identified(found, errors=3.0, **truths):
+    for name, truth in truths.items():
+        p = found[name]
+        check(p["verdict"] == "identified", f"{name}: {p['verdict']}")
+        check(abs(p["value"] - truth) <= errors * p["standard_error"], f"{name}: {p}, not {truth}")
+        check(p["low"] < p["value"] < p["high"], f"{name}: {p}")
 
 
 def refused(found, verdict):
@@ -92,8 +107,7 @@ def crawls():
     crawler("crawler.yaml")
     film("crawler.yaml", "film.csv", ("n1", "n4"), math.radians(1))
     found, said = fit("film", FILM.replace("ALIGN", FREE).replace("STARTS", "4"))
-    identified(found, "friction", 0.1)
-    identified(found, "soft", 3000.0)
+    identified(found, friction=0.1, soft=3000.0)
     check(said["agreeing"] >= 2, f"{said['agreeing']} of 4 starts agree")
     turned = {a["name"]: a for a in said["alignments"]}
     check(abs(turned["film.rotate"]["value"] - math.radians(1)) < 4 * turned["film.rotate"]["standard_error"],
@@ -163,19 +177,10 @@ loads:
 solver: {integrator: adaptive, tolerance: 1e-9, step: 1 ms}
 run: {duration: 2 s}
 """)
-    found, _ = fit("axis", """model: axis-model.yaml
-data: {axis: {file: axis.csv}}
-fit:
-  over:
-    mass: {from: 50 kg, to: 150 kg}
-    viscous: {from: 50 N s/m, to: 400 N s/m}
-    coulomb: {from: 5 N, to: 50 N}
-    offset: {from: -10 N, to: 10 N}
-  match: {axis: {time: axis.t, cart.x: axis.x, noise: 2 um}}
-  starts: 2
-""")
-    for name, truth in (("mass", M), ("viscous", FV), ("coulomb", FC), ("offset", -OFFSET)):
-        identified(found, name, truth, 4.0)
+    over = ("mass: {from: 50 kg, to: 150 kg}, viscous: {from: 50 N s/m, to: 400 N s/m}, "
+            "coulomb: {from: 5 N, to: 50 N}, offset: {from: -10 N, to: 10 N}")
+    found, _ = fit("axis", study("axis-model", "axis", over, "cart.x: d.x, noise: 2 um"))
+    identified(found, 4.0, mass=M, viscous=FV, coulomb=FC, offset=-OFFSET)
 
 
 # ---- a silicone member in a testing machine: loading and unloading differ ----
@@ -204,18 +209,10 @@ members:
 solver: {integrator: adaptive, tolerance: 1e-9, step: 20 ms}
 run: {duration: 8 s}
 """)
-    found, said = fit("silicone", """model: member.yaml
-data: {machine: {file: machine.csv}}
-fit:
-  over:
-    k: {from: 100 N/m, to: 1000 N/m}
-    branch: {from: 50 N/m, to: 1000 N/m}
-    dashpot: {from: 50 N s/m, to: 2000 N s/m, scale: log}
-  match: {machine: {time: machine.t, silicone.force: machine.F}}
-  starts: 3
-""")
-    for name, truth in (("k", k), ("branch", km), ("dashpot", c)):
-        identified(found, name, truth)
+    over = ("k: {from: 100 N/m, to: 1000 N/m}, branch: {from: 50 N/m, to: 1000 N/m}, "
+            "dashpot: {from: 50 N s/m, to: 2000 N s/m, scale: log}")
+    found, said = fit("silicone", study("member", "machine", over, "silicone.force: d.F", 3))
+    identified(found, k=k, branch=km, dashpot=c)
     check(0.015 < said["matches"][0]["rms"] < 0.025, f"residuals {said['matches'][0]['rms']} N, the noise is 0.02 N")
 
 
@@ -246,8 +243,7 @@ fit:
     shape: {{compute: modes, total_mass: 0.1 kg, noise: 1 g}}
   starts: 2
 """)
-    identified(found, "k", k)
-    identified(found, "height", h)
+    identified(found, k=k, height=h)
     check([o["without"] for o in said["omissions"]] == ["curve", "hammer", "shape"], "fits without each match")
     write("none.yaml", f"strut: 1\nstudy: x\nmodel: truss.yaml\nfit:\n  over: {{k: {{from: 5 kN/m, to: 50 kN/m}}}}\n"
           "  match: {hammer: {compute: modes, frequency_1: 12 Hz, frequency_2: 24 Hz, noise: 1 Hz}}\n")
@@ -272,19 +268,9 @@ fit:
   starts: 3
 """
 
-
+HALF_A_SECOND = "solver: {integrator: adaptive, tolerance: 1e-9, step: 5 ms}\nrun: {duration: 0.5 s}\n"
 # x alone hardly shows a turn, and shift and delay act alike in part
 SEEN_IN_PART = ", align: {shift: free, rotate: free, delay: free}"
-
-
-OSCILLATOR = """strut: 1
-name: A mass on a damped spring
-parameters: {c: 3 N s/m, k: 100 N/m, body: 0.1 kg, pull: 20 mm}
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [80 mm + pull, 0], mass: body, fixed: y}}
-members: {s: {kind: spring, nodes: [a, b], stiffness: k, damping: c, rest_length: 80 mm}}
-solver: {integrator: adaptive, tolerance: 1e-9, step: 5 ms}
-run: {duration: 0.5 s}
-"""
 
 
 def times(first, count, every=0.01):
@@ -309,43 +295,31 @@ def decay(seed=3, noise=1e-4, at=times(0, 101, 0.005), motion=swing):
 
 
 def alike():
-    write("alike.yaml", """strut: 1
-name: Two dampers side by side
-parameters: {one: 1 N s/m, other: 2 N s/m, k: 100 N/m}
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0.1, 0], mass: 0.1 kg, fixed: y}}
-members: {s: {kind: spring, nodes: [a, b], stiffness: k, damping: one + other, rest_length: 80 mm}}
-solver: {integrator: adaptive, tolerance: 1e-9, step: 5 ms}
-run: {duration: 0.5 s}
-""")
+    mass_on_spring("alike", "one: 1 N s/m, other: 2 N s/m, k: 100 N/m", "0.1", "0.1 kg",
+                   "stiffness: k, damping: one + other, rest_length: 80 mm", HALF_A_SECOND)
     decay()
     found, said = fit("alike-fit", ALIKE, code=5)
-    identified(found, "k", 100.0)
+    identified(found, k=100.0)
     for name in ("one", "other"):
         check(found[name]["verdict"] == "not determined by these data", f"{name}: {found[name]}")
     check(said["undetermined"][0]["words"] == "one and other together" and
           said["undetermined"][0]["determined"] == "one + 1 other", f"{said['undetermined']}")
     same = read("alike-fit", "table.csv")
-    for name, words in (("one-thread", ["--threads", "1"]),):
-        run("sweep", "alike-fit.yaml", "-o", name, "-q", *words, code=5)
-        check(read(name, "table.csv") == same, f"{name}: another table")
+    run("sweep", "alike-fit.yaml", "-o", "one-thread", "-q", "--threads", "1", code=5)
+    check(read("one-thread", "table.csv") == same, "one thread: another table")
     workers = [subprocess.Popen([strut, "sweep", "alike-fit.yaml", "-o", "shared", "-q", "--shard", f"{i}/2"],
                                 cwd=work, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for i in range(2)]
     check([w.wait() for w in workers] == [5, 5], "workers")
     check(read("shared", "table.csv") == same, "workers: another table")
-    killed = subprocess.Popen([strut, "sweep", "alike-fit.yaml", "-o", "killed", "-q"], cwd=work)
-    try:
-        killed.wait(0.15)
-    except subprocess.TimeoutExpired:
-        killed.kill()
-        killed.wait()
+    stopped("sweep", "alike-fit.yaml", "-o", "killed", "-q", after=0.15)
     run("sweep", "alike-fit.yaml", "-o", "killed", "-q", code=5)
     check(read("killed", "table.csv") == same, "killed: another table")
     one = ALIKE.replace("    other: {from: 0.1 N s/m, to: 5 N s/m}\n", "")
     found, said = fit("unknown-noise", one.replace(", noise: 0.1 mm", ""), code=0)
-    identified(found, "one", 1.0)
+    identified(found, one=1.0)
     check("probability" not in said, "a probability without a noise")
     decay(noise=0.0)  # what is left is the runs' own error, which is no reason to refuse
-    identified(fit("exact", one.replace(", noise: 0.1 mm", ""))[0], "one", 1.0)
+    identified(fit("exact", one.replace(", noise: 0.1 mm", ""))[0], one=1.0)
     decay()
     wrong = one.replace("noise: 0.1 mm", "noise: 0.01 mm")
     refused(fit("small-noise", wrong, code=5)[0], "the model does not explain the data")
@@ -353,23 +327,20 @@ run: {duration: 0.5 s}
 
 def ranges():
     """A ratio of three numbers, and a true value out of its range."""
-    write("ratio.yaml", OSCILLATOR)
-    study = """model: ratio.yaml
-data: {d: {file: decay.csv}}
-fit:
-  over: {c: {from: 1 N s/m, to: 9 N s/m}, k: {from: 50 N/m, to: 200 N/m}, body: {from: 10 g, to: 1 kg}}
-  match: {d: {time: d.t, b.x: d.x, noise: 0.1 mm}}
-"""
-    found, said = fit("three", study, code=5)
+    mass_on_spring("ratio", "c: 3 N s/m, k: 100 N/m, body: 0.1 kg", "0.1", "body",
+                   "stiffness: k, damping: c, rest_length: 80 mm", HALF_A_SECOND)
+    three = study("ratio", "decay", "c: {from: 1 N s/m, to: 9 N s/m}, k: {from: 50 N/m, to: 200 N/m}, "
+                  "body: {from: 10 g, to: 1 kg}", "b.x: d.x, noise: 0.1 mm", 8)
+    found, said = fit("three", three, code=5)
     check([u["words"] for u in said["undetermined"]] == ["c and k and body together"], f"{said['undetermined']}")
     for name in ("c", "k", "body"):
         check(found[name]["verdict"] == "not determined by these data", f"{name}: {found[name]}")
-    logs = study.replace("c: {from: 1 N s/m, to: 9 N s/m}, k: {from: 50 N/m, to: 200 N/m}",
+    logs = three.replace("c: {from: 1 N s/m, to: 9 N s/m}, k: {from: 50 N/m, to: 200 N/m}",
                          "k: {from: 20 N/m, to: 900 N/m, scale: log}").replace("to: 1 kg}", "to: 1 kg, scale: log}")
     write("scaled.yaml", read("ratio.yaml").decode().replace("damping: c", "damping: 0.03 s*k"))
     found, said = fit("two", logs.replace("ratio.yaml", "scaled.yaml"), code=5)
     check([u["determined"] for u in said["undetermined"]] == ["k/body"], f"{said['undetermined']}")
-    found, _ = fit("bound", study.replace("k: {from: 50 N/m, to: 200 N/m}, body: {from: 10 g, to: 1 kg}",
+    found, _ = fit("bound", three.replace("k: {from: 50 N/m, to: 200 N/m}, body: {from: 10 g, to: 1 kg}",
                                           "k: {from: 50 N/m, to: 99 N/m}"), code=5)
     check(found["k"]["verdict"] == "ends at a bound of its range" and found["k"]["high"] is None, f"{found['k']}")
 
@@ -391,19 +362,19 @@ def judged():
             ("large", 3, begin, swing, both.replace("0.5", "5"), ", noise: 0.3 mm", 1, right, ()),
             ("period", 0, times(0.3, 100), lambda t: swing(t - 0.1, 0), "k: {from: 20, to: 300}", noise + delay, 2, right, ())):
         decay(at=at, motion=motion)
-        write("swings.yaml", OSCILLATOR.replace("c: 3", f"c: {c}"))
-        found, said = all_found[name] = fit(name, f"model: swings.yaml\ndata: {{d: {{file: decay.csv}}}}\nfit:\n  over: {{{over}}}\n"
-                                            f"  match: {{d: {{time: d.t, b.x: d.x{match}}}}}\n  starts: {starts}\n",
+        mass_on_spring("swings", f"c: {c} N s/m, k: 100 N/m", "0.1", "0.1 kg",
+                       "stiffness: k, damping: c, rest_length: 80 mm", HALF_A_SECOND)
+        found, said = all_found[name] = fit(name, study("swings", "decay", over, "b.x: d.x" + match, starts),
                                             code=0 if verdict == right else 5)
         if verdict != right:
             refused(found, verdict)
         check(all(words in said["reason"] for words in reason), f"{name}: {said.get('reason')}")
     check("give more" not in all_found["dry"][1]["reason"], "starts that agree, and no better fit")
-    identified(all_found["large"][0], "c", 3.0)
+    identified(all_found["large"][0], c=3.0)
     check(2.5 < all_found["large"][1]["matches"][0]["excess"] < 3.5 and
           "excess" not in all_found["period"][1]["matches"][0], "a noise that is three times too large")
     found, said = all_found["period"]
-    identified(found, "k", 100.0)
+    identified(found, k=100.0)
     delay = said["alignments"][0]
     periods = (delay["also"] - delay["value"]) / (2 * math.pi * math.sqrt(0.1 / 100))
     check(abs(periods - round(periods)) < 0.01 and round(periods), f"{periods} periods beside: {delay}")
@@ -415,22 +386,12 @@ def delayed():
     late = times(0.7, 76, 0.02)
     table("swing.csv", {"t [s]": late, "x [m]": [
         1 + pull * math.exp(-d * t) * (math.cos(w * t) + d / w * math.sin(w * t)) for t in late]}, 1e-4)
-    write("swing.yaml", """strut: 1
-parameters: {stiff: 150 N/m, damp: 1 N s/m, pull: 10 mm}
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m + pull, 0], mass: 1 kg, fixed: y}}
-members: {s: {kind: spring, nodes: [a, b], stiffness: stiff, damping: damp, rest_length: 1 m}}
-solver: {accuracy: 1 %}
-run: {duration: 3 s}
-""")
-    study = """model: swing.yaml
-data: {film: {file: swing.csv}}
-fit:
-  over: {stiff: {from: 50, to: 400}, damp: {from: 0.05, to: 3}, pull: {from: 2 mm, to: 100 mm}}
-  match: {film: {time: film.t, b.x: film.x, noise: 0.0001ALIGN}}
-"""
-    found, _ = fit("own-time", study.replace("ALIGN", ""))
-    identified(found, "pull", pull)
-    found, _ = fit("free-time", study.replace("ALIGN", ", align: {delay: free}"), code=5)
+    mass_on_spring("swing", "stiff: 150 N/m, damp: 1 N s/m, pull: 10 mm", "1 m + pull", "1 kg",
+                   "stiffness: stiff, damping: damp, rest_length: 1 m", "solver: {accuracy: 1 %}\nrun: {duration: 3 s}\n")
+    over = "stiff: {from: 50, to: 400}, damp: {from: 0.05, to: 3}, pull: {from: 2 mm, to: 100 mm}"
+    found, _ = fit("own-time", study("swing", "swing", over, "b.x: d.x, noise: 0.0001", 8))
+    identified(found, pull=pull)
+    found, _ = fit("free-time", study("swing", "swing", over, "b.x: d.x, noise: 0.0001, align: {delay: free}", 8), code=5)
     refused(found, "starts disagree")
 
 
@@ -446,32 +407,20 @@ solver: {integrator: adaptive, tolerance: 1e-9, step: 5 ms}
 run: {duration: 2 s}
 output: {every: 10 ms, channels: [position]}
 """)
+    over, match = "k: {from: 50, to: 200}, c: {from: 0.1, to: 2}", f"n1.x: d.x1, n1.y: d.y1, noise: 0.1 mm, {FREE}"
     for turn, delay, starts in ((3.0, 0.3, 2), (-2.0, 0.62, 2), (0.5, 0.62, 3), (2.8, 1000.3, 2)):  # the last by a clock
         film("cross.yaml", "cross.csv", ("n1",), turn, delay, 1e-4)
-        found, said = fit(f"cross{turn}{delay}", f"""model: cross.yaml
-data: {{film: {{file: cross.csv}}}}
-fit:
-  over: {{k: {{from: 50, to: 200}}, c: {{from: 0.1, to: 2}}, pull: {{from: 5 mm, to: 50 mm}}}}
-  match: {{film: {{time: film.t, n1.x: film.x1, n1.y: film.y1, noise: 0.1 mm, {FREE}}}}}
-  starts: {starts}
-""")
-        for name, truth in (("k", 100.0), ("c", 0.5), ("pull", 0.02)):
-            identified(found, name, truth)
+        found, said = fit(f"cross{turn}{delay}", study(
+            "cross", "cross", over + ", pull: {from: 5 mm, to: 50 mm}", match, starts))
+        identified(found, k=100.0, c=0.5, pull=0.02)
         for alignment, truth in zip(said["alignments"][2:], (turn, delay)):
             near(alignment["value"], truth, alignment["name"], 0.02)
     # A clip that begins later than it is long, by the clock of the run: its free delay is 0.
     film("cross.yaml", "cross.csv", ("n1",), 0.0, 0.0, 1e-4)
     head, *frames = read("cross.csv").decode().splitlines()
     write("clip.csv", "\n".join([head, *(frame for frame in frames if 1.0 <= float(frame.split(",")[0]) <= 1.8)]) + "\n")
-    found, said = fit("clip", f"""model: cross.yaml
-data: {{film: {{file: clip.csv}}}}
-fit:
-  over: {{k: {{from: 50, to: 200}}, c: {{from: 0.1, to: 2}}}}
-  match: {{film: {{time: film.t, n1.x: film.x1, n1.y: film.y1, noise: 0.1 mm, {FREE}}}}}
-  starts: 2
-""")
-    for name, truth in (("k", 100.0), ("c", 0.5)):
-        identified(found, name, truth)
+    found, said = fit("clip", study("cross", "clip", over, match))
+    identified(found, k=100.0, c=0.5)
     # One that begins more than ten of its lengths late, but while the model runs.
     write("falls.yaml", """strut: 1
 parameters: {weight: 2 N}
@@ -482,14 +431,9 @@ run: {duration: 10 s}
 """)
     late = times(9, 81)
     table("fall.csv", {"t [s]": late, "x [m]": [1.5 * t * t / 2 for t in late]}, 1e-3)
-    found, said = fit("fall", f"""model: falls.yaml
-data: {{film: {{file: fall.csv}}}}
-fit:
-  over: {{weight: {{from: 0.5 N, to: 5 N}}}}
-  match: {{film: {{time: film.t, b.x: film.x, noise: 1 mm, align: {{shift: free, delay: free}}}}}}
-  starts: 1
-""")
-    identified(found, "weight", 1.5)
+    found, said = fit("fall", study("falls", "fall", "weight: {from: 0.5 N, to: 5 N}",
+                                    "b.x: d.x, noise: 1 mm, align: {shift: free, delay: free}", 1))
+    identified(found, weight=1.5)
 
 
 def driven():
@@ -506,16 +450,10 @@ run: {duration: 2 s}
 output: {every: 10 ms, channels: [position]}
 """)
     film("drive.yaml", "driven.csv", ("b",), 1.0, 0.2, 1e-3)
-    study = f"""model: drive.yaml
-data: {{film: {{file: driven.csv}}}}
-fit:
-  over: {{k: {{from: 50, to: 200}}, c: {{from: 0, to: 2}}, a: {{from: 5 mm, to: 50 mm}}, phase: {{from: -180 deg, to: 180 deg}}, f: {{from: 3.25 Hz, to: 3.35 Hz}}}}
-  match: {{film: {{time: film.t, b.x: film.x, b.y: film.y, noise: NOISE, {FREE}}}}}
-  starts: 2
-"""
-    found, said = fit("driven", study.replace("NOISE", "1 mm"))
-    for name, truth in (("k", 110.0), ("c", 0.4), ("a", 0.015), ("phase", 0.5), ("f", 3.3)):
-        identified(found, name, truth)
+    over = ("k: {from: 50, to: 200}, c: {from: 0, to: 2}, a: {from: 5 mm, to: 50 mm}, "
+            "phase: {from: -180 deg, to: 180 deg}, f: {from: 3.25 Hz, to: 3.35 Hz}")
+    found, said = fit("driven", study("drive", "driven", over, f"b.x: d.x, b.y: d.y, noise: 1 mm, {FREE}"))
+    identified(found, k=110.0, c=0.4, a=0.015, phase=0.5, f=3.3)
     beside = [r for r in rows("driven", "table.csv") if r["kind"] == "beside" and r["of"] == "phase"]
     check(float(beside[0]["sum"]) < said["starts"][1]["sum"] - 4, "a start has found the right valley: another seed")
     # Long after the start other delays fit nearly as well; all starts end at one of these.
@@ -523,54 +461,38 @@ fit:
     film("drive-on.yaml", "driven.csv", ("b",), 0.0, 0.1, 1e-4)
     head, *frames = read("driven.csv").decode().splitlines()
     write("driven.csv", "\n".join([head, *(frame for frame in frames if float(frame.split(",")[0]) >= 4.1)]) + "\n")
-    study = study[:study.index("  over")] + """  over: {phase: {from: -180 deg, to: 180 deg}, a: {from: 5 mm, to: 50 mm}}
-  match: {film: {time: film.t, b.x: film.x, b.y: film.y, noise: 0.1 mm, align: {shift: free, delay: free}}}
-"""
-    found, _ = fit("driven-on", study.replace("drive.yaml", "drive-on.yaml"))
-    for name, truth in (("a", 0.015), ("phase", 0.5)):
-        identified(found, name, truth)
+    found, _ = fit("driven-on", study(
+        "drive-on", "driven", "phase: {from: -180 deg, to: 180 deg}, a: {from: 5 mm, to: 50 mm}",
+        "b.x: d.x, b.y: d.y, noise: 0.1 mm, align: {shift: free, delay: free}", 8))
+    identified(found, a=0.015, phase=0.5)
 
 
 def vibrates():
     """A steady vibration does not say at which period the film begins: fits a period apart are nearly as good."""
-    write("vibrates.yaml", """strut: 1
-parameters: {k: 100 N/m, c: 2 N s/m, pull: 0 mm}
-nodes: {w: {position: [0, 0], fixed: both}, b: {position: [1 m + pull, 0], mass: 1 kg, fixed: y}}
-members: {s: {kind: spring, nodes: [w, b], stiffness: k, damping: c, rest_length: 1 m}}
-loads: {p: {node: b, force: [1 N, 0], signal: {sine: {amplitude: 1, frequency: 1.5 Hz}}}}
+    mass_on_spring("vibrates", "k: 100 N/m, c: 2 N s/m", "1 m", "1 kg", "stiffness: k, damping: c, rest_length: 1 m",
+                   """loads: {p: {node: b, force: [1 N, 0], signal: {sine: {amplitude: 1, frequency: 1.5 Hz}}}}
 solver: {step: 1 ms}
 run: {duration: 20 s}
 """)
     w = 3.0 * math.pi
     size = 1.0 / complex(100.0 - w * w, 2.0 * w)
-    late = times(10, 150)
-    places = [1.0 + abs(size) * math.sin(w * t + math.atan2(size.imag, size.real)) for t in late]
-    delay, elsewhere = ", align: {delay: free}", "about as small ends elsewhere"
-    for seed, over, align, err in ((3, "k: {from: 50, to: 200}, c: {from: 0.2, to: 20}", delay, elsewhere),
-                                   (5, "k: {from: 50, to: 200}", delay, elsewhere),
-                                   (7, "k: {from: 50, to: 200}, pull: {from: 0, to: 20 mm}", "", "")):
-        table("vibrates.csv", {"t [s]": late, "x [m]": places}, 20e-6, seed)
-        found, _ = fit(f"vibrates-{seed}", f"""model: vibrates.yaml
-data: {{film: {{file: vibrates.csv}}}}
-fit:
-  over: {{{over}}}
-  match: {{film: {{time: film.t, b.x: film.x, noise: 20 um{align}}}}}
-  starts: 4
-""", code=5, err=err)
-        if align:
-            refused(found, "starts disagree")
-    identified(found, "k", 100.0)  # but where a steady motion began has left no trace
-    check(found["pull"]["verdict"] == "not determined by these data" and found["pull"]["high"] is None, f"{found['pull']}")
+    at = times(10, 150)
+    places = [1.0 + abs(size) * math.sin(w * t + math.atan2(size.imag, size.real)) for t in at]
+    for seed, over in ((3, "k: {from: 50, to: 200}, c: {from: 0.2, to: 20}"), (5, "k: {from: 50, to: 200}")):
+        table("vibrates.csv", {"t [s]": at, "x [m]": places}, 20e-6, seed)
+        found, _ = fit(f"vibrates-{seed}", study("vibrates", "vibrates", over, "b.x: d.x, noise: 20 um, align: "
+                                                 "{delay: free}", 4), code=5, err="about as small ends elsewhere")
+        refused(found, "starts disagree")
 
 
 def coverage(count, align=""):
     """In how many of so many noises the intervals hold the truth; `align`: of the match."""
-    study = ALIKE.replace("    other: {from: 0.1 N s/m, to: 5 N s/m}\n", "").replace("starts: 3", "starts: 1").replace(
+    one = ALIKE.replace("    other: {from: 0.1 N s/m, to: 5 N s/m}\n", "").replace("starts: 3", "starts: 1").replace(
         "noise: 0.1 mm", "noise: 0.1 mm" + align)
     held = {"one": 0, "k": 0}
     for seed in range(count):
         decay(100 + seed)
-        found, _ = fit(f"noise-{seed}-{len(align)}", study)
+        found, _ = fit(f"noise-{seed}-{len(align)}", one)
         for name, truth in (("one", 1.0), ("k", 100.0)):
             p = found[name]
             held[name] += p["verdict"] == "identified" and p["low"] <= truth <= p["high"]

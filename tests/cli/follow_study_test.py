@@ -6,11 +6,9 @@ import math
 import os
 import shutil
 import signal
-import subprocess
-import time
 
 from periodic import DUFFING, duffing_folds_at
-from testing import answer, check, finish, path, rows, run, strut, work, write
+from testing import answer, check, finish, path, rows, run, stopped, write
 
 with open(DUFFING, encoding="utf-8") as file:
     write("duffing.yaml", file.read() + "configurations: {drawn: {}}\n")
@@ -73,13 +71,9 @@ write("long.yaml", STUDY.replace("0.15 N]", "0.15 N, 0.2 N]").replace("to: 0.24 
 run("sweep", "long.yaml", "-o", "whole", "-q")
 for stop, wait in ((signal.SIGKILL, 0.7), (signal.SIGINT, 0.7)):
     shutil.rmtree(path("part"), ignore_errors=True)
-    with subprocess.Popen([strut, "sweep", "long.yaml", "-o", "part", "-q", "--threads", "1"], cwd=work,
-                          stderr=subprocess.PIPE, text=True) as job:
-        time.sleep(wait)
-        job.send_signal(stop)
-        err = job.communicate(timeout=60)[1]
+    job = stopped("sweep", "long.yaml", "-o", "part", "-q", "--threads", "1", after=wait, by=stop)
     if stop == signal.SIGINT and job.returncode != 0:
-        check("interrupted after" in err, f"interrupt: {err}")
+        check("interrupted after" in job.stderr, f"interrupt: {job.stderr}")
         partial = rows("part", "branches-partial.csv")
         check({p["finished"] for p in partial} <= {"yes", "no"}, "what is finished")
     run("sweep", "long.yaml", "-o", "part", "-q")

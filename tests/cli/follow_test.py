@@ -6,11 +6,9 @@ import json
 import math
 import os
 import signal
-import subprocess
-import time
 
 from periodic import BILINEAR, DUFFING, WELLS, duffing_folds_at, follow, special
-from testing import check, finish, models, near, read, rows, run, strut, work, write
+from testing import check, finish, models, near, read, rows, run, stopped, write
 
 
 def root(f, a, b):
@@ -155,16 +153,13 @@ check(len(both["branches"]) == 1 and "on branch 1" in both["notes"][0], f"notes 
 # ---- an interrupted branch is kept, and marked; the first waits may end within the run that starts it
 
 for wait in (1.5, 4, 12, 30):
-    partial = subprocess.Popen([strut, "path", "--periodic", os.path.join(models, "crawler", "crawler.yaml"), "--set", "friction=0.2",
-                                "--at", "I", "--over", "frequency=9Hz..13Hz", "--values", "10Hz", "-o", "partial", "--json",
-                                "-q"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=work)
-    time.sleep(wait)
-    partial.send_signal(signal.SIGINT)
-    out, err = partial.communicate(timeout=60)
-    if out:
+    partial = stopped("path", "--periodic", f"{models}/crawler/crawler.yaml", "--set", "friction=0.2", "--at", "I",
+                      "--over", "frequency=9Hz..13Hz", "--values", "10Hz", "-o", "partial", "--json", "-q", after=wait,
+                      by=signal.SIGINT)
+    if partial.stdout:
         break
-check(partial.returncode not in (0, 1) and "interrupted" in err, f"interrupt: {partial.returncode} {err}")
-got = json.loads(out)
+check(partial.returncode not in (0, 1) and "interrupted" in partial.stderr, f"interrupt: {partial}")
+got = json.loads(partial.stdout)
 check("interrupted" in got["notes"][-1] and got["branches"][0]["begins"] == "interrupted", f"{got['notes']}")
 check(len(rows("partial", "branches.csv")) == len(got["branches"][0]["points"]) >= 2, "points of a partial branch")
 

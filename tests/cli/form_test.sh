@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # strut form: what it writes stands still when it is run; what it refuses, and how.
 . "$(dirname "$0")/lib.sh"
-models=$here/../../models
 
 # drift FILE: farthest that a coordinate in nodes.csv goes from its first value.
 drift() {

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Ctrl-C: stops within a second, keeps what there is, marks it, exit code 130.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 
 # ticks PROCESS: processor time it has used [1/100 s]; nothing once it is over.
 ticks() {

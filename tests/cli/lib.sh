@@ -5,6 +5,8 @@ set -u
 
 strut=$(realpath "$1")
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+root=$(dirname "$(dirname "$here")")
+models=$root/models crawler=$root/models/crawler/crawler.yaml hopper=$root/tests/cli/hopper.yaml
 work=$(mktemp -d)
 failures=0
 mounted=

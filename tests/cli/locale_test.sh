@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A locale with a decimal comma changes nothing. $2: the test program of the JSON writer.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 json_test=$2
 
 mkdir locales

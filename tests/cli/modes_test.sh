@@ -39,10 +39,10 @@ same first out
 OMP_NUM_THREADS=3 expect 0 modes frame.yaml --json
 same first out
 # Beyond 400 coordinates too, where the BLAS would use threads of its own.
-OPENBLAS_NUM_THREADS=1 expect 0 modes "$here/../../models/parts/x-chain.yaml" --set cells=1000 --json
+OPENBLAS_NUM_THREADS=1 expect 0 modes "$models/parts/x-chain.yaml" --set cells=1000 --json
 cp out long
 for threads in 2 4; do
-  OPENBLAS_NUM_THREADS=$threads expect 0 modes "$here/../../models/parts/x-chain.yaml" --set cells=1000 --json
+  OPENBLAS_NUM_THREADS=$threads expect 0 modes "$models/parts/x-chain.yaml" --set cells=1000 --json
   same long out
 done
 cp first out
@@ -78,7 +78,7 @@ near '[.modes[] | select(.frequency == null and .eigenvalue == null and .error >
 
 # Cables that are just taut pull one way only: they count as slack, whatever their last bits, and this is said.
 # Of the arch of N wedges 2 N bars remain for 4 (N - 1) coordinates.
-arch=$here/../../models/parts/arch.yaml
+arch=$models/parts/arch.yaml
 for cells in 8 16 23; do
   gives '[.modes[] | select(.kind == "mechanism" and .frequency == 0)] | length' "2 * $cells - 4" 0 modes "$arch" --set cells=$cells
   near '[.modes[] | select(.frequency > 0) | .frequency] | min | if . > 1 then 1 else 0 end' 1 0

@@ -3,10 +3,8 @@
 # The program starts without the libraries that only some commands need, loads them when one does, and says
 # what is missing where it cannot.
 #
-#   sh tests/cli/modules_test.sh STRUT MODELS
-models=$(realpath "$2")
+#   sh tests/cli/modules_test.sh STRUT
 . "$(dirname "$0")/lib.sh"
-crawler=$models/crawler/crawler.yaml
 
 # As linked: nothing of what takes long to load.
 built=$(dirname "$strut")

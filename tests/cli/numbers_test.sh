@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs that fail numerically: exit code 3, what they say and what they keep.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 
 expect 3 run "$hopper" --set "step=20 ms" -o refused
 out_empty

@@ -48,16 +48,9 @@ keep: [velocity, cost_of_transport, quantities]
         check(row["never [s]"] == "", str(row))
         check(abs(float(row["away [m]"])) < 1e-12, str(row))
     # without weight or motion there is no cost of transport
-    row = sweep("still", """model: plain.yaml
-axes: [{speed: [0 mm/s]}]
-keep: [velocity, cost_of_transport]
-""")[0]
-    check(row["cost_of_transport"] == "" and row["work_per_distance [N]"] == "", str(row))
-    row = sweep("weightless", """model: plain.yaml
-axes: [{fall: [0 m/s^2]}]
-keep: [velocity, cost_of_transport]
-""")[0]
-    check(row["cost_of_transport"] == "" and row["work_per_distance [N]"] != "", str(row))
+    for name, axis in (("still", "speed: [0 mm/s]"), ("weightless", "fall: [0 m/s^2]")):
+        row, = sweep(name, f"model: plain.yaml\naxes: [{{{axis}}}]\nkeep: [velocity, cost_of_transport]\n")
+        check(row["cost_of_transport"] == "" and (row["work_per_distance [N]"] == "") == (name == "still"), str(row))
     # the report and the summary
     said = run("run", "block.yaml").stdout
     check("in push" in said and "the target was not reached" in said, said)
@@ -95,51 +88,43 @@ keep: [stable_count, barriers, lowest_barrier]
 
 
 # Von Mises' truss: the stiffness of its apex, the force that holds it, its shape turned and moved.
+TRUSS = "copied/basics/von-mises-truss.yaml"
+
+
+def of_truss(name, text, model=TRUSS, axis="load: [0 N]"):
+    row, = sweep(name, f"model: {model}\naxes: [{{{axis}}}]\n{text}\n")
+    return row
+
+
 def goals():
-    truss = "copied/basics/von-mises-truss.yaml"
     rest = math.hypot(1, 0.3)
 
     def force(u):
         y = 0.3 + u
         return 2000 * y * (1 - rest / math.hypot(1, y))
 
+    stiffness = "compute: modes\nkeep: [stiffness]\nstiffness_at: "
     for degrees in (90, 0, 30):
-        row = sweep(f"stiffness-{degrees}", f"""model: {truss}
-compute: modes
-axes: [{{load: [0 N]}}]
-keep: [stiffness]
-stiffness_at: {{node: apex, direction: {degrees} deg}}
-""")[0]
+        row = of_truss(f"stiffness-{degrees}", stiffness + f"{{node: apex, direction: {degrees} deg}}")
         x, y = 2000 / rest ** 2, 2000 * 0.09 / rest ** 2
         c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
         near(row["stiffness [N/m]"], 1 / (c * c / x + s * s / y), f"stiffness at {degrees} deg")
-    for node, degrees, model, axis in (("left", 0, truss, "load: [0 N]"), ("block", 90, "copied/basics/oscillator.yaml", "steps: [200]")):
-        row = sweep(f"held-{node}", f"""model: {model}
-compute: modes
-axes: [{{{axis}}}]
-keep: [stiffness]
-stiffness_at: {{node: {node}, direction: {degrees} deg}}
-""")[0]
+    held = (of_truss("held-left", stiffness + "{node: left, direction: 0 deg}"),
+            of_truss("held-block", stiffness + "{node: block, direction: 90 deg}", "copied/basics/oscillator.yaml",
+                     "steps: [200]"))
+    for row in held:
         check(row["stiffness [N/m]"] == "", str(row))
     points = [-0.05, -0.1, -0.2, -0.35, -0.5, -0.6]
     for off in (0.0, 2.0):
         pairs = ", ".join(f"[{u} m, {force(u) + off} N]" for u in points)
-        row = sweep(f"curve-{off}", f"""model: {truss}
-compute: path
-axes: [{{load: [0 N]}}]
+        row = of_truss(f"curve-{off}", f"""compute: path
 path: {{over: apex.y, until: -0.6 m, steps: 2000}}
 keep: [curve_distance, end]
-curve: [{pairs}]
-""")[0]
+curve: [{pairs}]""")
         found = row["curve_distance [N]"]
         check(found != "" and abs(float(found) - off) < 0.02, f"curve off by {off}: {row}")
-    row = sweep("far", f"""model: {truss}
-compute: path
-axes: [{{load: [0 N]}}]
-path: {{over: apex.y, until: -0.1 m}}
-keep: [curve_distance]
-curve: [[-0.5 m, 0 N]]
-""")[0]
+    row = of_truss("far", "compute: path\npath: {over: apex.y, until: -0.1 m}\nkeep: [curve_distance]\n"
+                   "curve: [[-0.5 m, 0 N]]")
     check(row["curve_distance [N]"] == "", str(row))
     # as drawn but for the apex, which hangs 0.1 m lower; turned by 30 degrees and moved
     def turned(x, y):
@@ -149,30 +134,16 @@ curve: [[-0.5 m, 0 N]]
     for low, wanted in ((0.0, 0.0), (0.1, 0.1 * math.sqrt(2 / 9))):
         shape = (f"{{left: {turned(-1, 0)}, right: {turned(1, 0)}, apex: {turned(0, 0.3 - low)}}}")
         for compute, place in (("modes", ""), ("run", "run: {duration: 10 ms}\n")):
-            row = sweep(f"shape-{compute}-{low}", f"""model: {truss}
-compute: {compute}
-axes: [{{load: [0 N]}}]
-keep: [shape_distance]
-{place}shape: {shape}
-""")[0]
+            row = of_truss(f"shape-{compute}-{low}", f"compute: {compute}\nkeep: [shape_distance]\n{place}shape: {shape}")
             check(abs(float(row["shape_distance [m]"]) - wanted) < 1e-9, f"{row}: {wanted}")
     # the nearest of the stable states: the apex below
-    row = sweep("below", f"""model: {truss}
-compute: equilibria
-axes: [{{load: [0 N]}}]
-keep: [shape_distance, stable_count]
-shape: {{left: [-1 m, 0 m], right: [1 m, 0 m], apex: [0 m, -0.3 m]}}
-""")[0]
+    row = of_truss("below", "compute: equilibria\nkeep: [shape_distance, stable_count]\n"
+                   "shape: {left: [-1 m, 0 m], right: [1 m, 0 m], apex: [0 m, -0.3 m]}")
     check(abs(float(row["shape_distance [m]"])) < 1e-9, str(row))
-    row = sweep("like", f"""model: copied/crawler/crawler.yaml
-compute: modes
-at: "II"
-axes: [{{friction: [0.1]}}]
-keep: [shape_distance]
-like: "II"
-""")[0]
+    row = of_truss("like", 'compute: modes\nat: "II"\nkeep: [shape_distance]\nlike: "II"',
+                   "copied/crawler/crawler.yaml", "friction: [0.1]")
     check(float(row["shape_distance [m]"]) < 1e-5, str(row))
-    base = f"strut: 1\nstudy: s\nmodel: {truss}\naxes: [{{load: [0 N]}}]\n"
+    base = f"strut: 1\nstudy: s\nmodel: {TRUSS}\naxes: [{{load: [0 N]}}]\n"
     for more, words in (
             ("compute: modes\nkeep: [stiffness]\n", "'stiffness' needs 'stiffness_at'"),
             ("compute: modes\nkeep: [stiffness]\nstiffness_at: {node: top, direction: 0 deg}\n",

@@ -1,9 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # strut.m in Octave: what it returns is what the program prints and writes; its arguments, errors and warnings.
-#
-#   sh octave_test.sh STRUT MODELS
-models=$(realpath "$2")
 . "$(dirname "$0")/lib.sh"
 octave=$(command -v octave-cli || command -v octave) || { echo "skipped: Octave is not installed"; exit 77; }
 cp -R "$models" models

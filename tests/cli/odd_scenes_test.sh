@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The commands for structures at rest on odd scenes: one sentence or an answer without "nan".
 . "$(dirname "$0")/lib.sh"
-models=$here/../../models
 
 # whole NAME: every command answers or refuses, in words and as JSON, and no number is missing.
 whole() {

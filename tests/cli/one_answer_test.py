@@ -8,7 +8,7 @@ import shutil
 import subprocess
 
 import testing
-from testing import answer, check, finish, models, run, work, write
+from testing import answer, check, finish, models, numbers, rows, run, work, write
 
 tests = os.path.dirname(os.path.abspath(__file__))
 os.chdir(work)
@@ -61,17 +61,9 @@ def answers(name, *more, code=0):
     return summaries[0], tables[0]
 
 
-def rows(name):
-    """Of a table, without the units of its columns."""
-    return [{key.split(" [")[0]: value for key, value in row.items()} for row in testing.rows(name)]
-
-
-def numbers(name):
-    return [{key: float(value) for key, value in row.items()} for row in rows(name)]
-
-
 def column(name, key):
-    return [row[key] for row in rows(name)]
+    """The cells of a column of a table, as texts."""
+    return [value for row in rows(name) for title, value in row.items() if title.split(" [")[0] == key]
 
 
 def stored(energy):

@@ -3,7 +3,6 @@
 # What strut did not write it does not overwrite: refused before anything is computed, with the name.
 # What it wrote itself it replaces, wherever the same command is given again.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 pentagon=$here/pentagon.yaml
 
 # refuses FILE WORD...: FILE is somebody else's and stays so, nothing new appears in its folder, and the

@@ -96,12 +96,12 @@ tells 1 "unknown configuration 'upright'" path over.yaml --at upright
 tells 3 "'drawn' is no equilibrium where the path starts" path over.yaml --at drawn --from 1 --until 2
 
 # Where Zeeman's machine folds: first and second derivative zero on the circle of a rigid bar, to 30 digits.
-expect 0 path "$here/../../models/gallery/zeeman.yaml" --set "rod=1e11 N/m" --over control_y --until "-0.1 m" --json
+expect 0 path "$models/gallery/zeeman.yaml" --set "rod=1e11 N/m" --over control_y --until "-0.1 m" --json
 holds '[.events[] | .kind] == ["limit point", "limit point"] and
   (.events[0].value - -0.144560047338849 | fabs) < 2e-11 and
   (.events[1].value - -0.343357043537997 | fabs) < 2e-11'
 # The crawler's states give way where its drive is long enough.
-expect 0 path "$here/../../models/crawler/crawler.yaml" --over drive --at I --until "8 mm" --json
+expect 0 path "$crawler" --over drive --at I --until "8 mm" --json
 holds '([.events[] | .kind] | index("lift-off")) as $lift |
   .events[$lift + 1].kind == "limit point at a kink" and .end == "invalid" and
   (.remark | contains("rest length of m8 would be negative")) and
@@ -126,7 +126,7 @@ expect 0 path over.yaml --set load=0 --over k --until "-10 N/m" --json
 holds '.end == "invalid" and (.points[-1].value | fabs) < 1e-3 and
   (.remark | contains("over.yaml:") and contains("stiffness"))'
 # Branches: two links of length l, each turned by t, stand under the load 2 stiffness t/(l sin t).
-column="$here/../../models/parts/link-column.yaml"
+column="$models/parts/link-column.yaml"
 expect 0 path "$column" --set links=2 --until 20 --branches 1 --json
 holds '(.branches | length) == 2 and
   ([.branches[] | .end == "until" and .from_branch == 0 and (.events | length) == 0] | all) and
@@ -137,7 +137,7 @@ holds '(.branches | length) == 2 and
     .stable and (.factor * $l * $sine / (2 * $t) - 1 | fabs) < 1e-9] | all)'
 # Von Mises' truss, steep: off the middle each bar with its force leaves no residual, and both halves of
 # the branch meet on the other side.
-expect 0 path "$here/../../models/gallery/von-mises.yaml" --set load=1 --set span=0.15 --until 1 --branches 2 --json
+expect 0 path "$models/gallery/von-mises.yaml" --set load=1 --set span=0.15 --until 1 --branches 2 --json
 holds 'def pull($dx; $dy): (($dx * $dx + $dy * $dy) | sqrt) as $l |
     ((0.2725 | sqrt) / $l - 1) as $s | [$s * $dx, $s * $dy];
   (.branches | length) == 6 and

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of strut path --periodic share: oscillators whose periodic motions are known, and Duffing's folds."""
+"""What the tests of strut path --periodic share: oscillators of known motions, and Duffing's folds."""
 import math
 
 from testing import answer, models
@@ -37,8 +37,8 @@ def special(result, kind, branch=0):
 
 
 def duffing_folds(amplitude):
-    """(Hz, N) of both folds of the harmonic balance ((s - w^2)^2 + (c w)^2) A^2 = F^2, s = 1 + 3/4 b A^2, of DUFFING:
-    where its derivative by A^2 vanishes, a quadratic equation of w^2."""
+    """(Hz, N) of both folds of DUFFING's harmonic balance ((s - w^2)^2 + (c w)^2) A^2 = F^2, with
+    s = 1 + 3/4 b A^2: where its derivative by A^2 vanishes, a quadratic equation of w^2."""
     cubic = damping = 0.05
     s = 0.75 * cubic * amplitude**2
     mean, product = 1 + 2 * s - damping**2 / 2, (1 + s) * (1 + 3 * s)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The progress bar: on a terminal, nowhere else.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 long="--set seconds=1e6"
 
 # for_a_while WORD...: a run, interrupted after two seconds.

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What -o DIR holds, and that equal runs give equal bytes.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 all="contacts.csv energy.csv members.csv nodes.csv scene.yaml summary.json trajectory.h5"
 
 expect 0 run "$hopper" -o deep/er/one

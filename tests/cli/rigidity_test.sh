@@ -54,7 +54,6 @@ shows 0 "self stress s                            1" rigidity held.yaml
 out_has "mechanisms f                             0"
 
 # At an equilibrium by its name: the crawler lies on the ground, its forces balance there.
-crawler=$here/../../models/crawler/crawler.yaml
 shows 0 '"at":	"I"' rigidity "$crawler" --at I --json
 out_has '"equilibrium":	true' '"rank":	7'
 tells 1 "IV" rigidity "$crawler" --at IV

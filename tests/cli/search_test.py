@@ -8,11 +8,10 @@ import math
 import os
 import re
 import signal
-import subprocess
 import sys
 import time
 
-from testing import answer, check, copy_models, finish, path, read, rows, run, strut, work, write
+from testing import answer, check, copy_models, finish, path, read, rows, run, stopped, write
 
 copy_models()
 
@@ -88,15 +87,9 @@ speed = answer("run", "gait1/best.yaml")["velocity"]
 check(f"{speed}" in read("gait1", "best.csv").decode(), f"best.yaml runs at {speed}")
 write("gait.yaml", GAIT.replace("SEED", "1"))
 for how in (signal.SIGKILL, signal.SIGINT):
-    process = subprocess.Popen([strut, "sweep", "gait.yaml", "-o", "killed", "--quiet"], cwd=work,
-                               stderr=subprocess.PIPE)
-    for _ in range(1000):
-        if os.path.exists(path("killed", "points.slots")):
-            break
-        time.sleep(0.01)
-    time.sleep(0.05)
-    process.send_signal(how)
-    process.communicate()
+    begun = time.monotonic()
+    stopped("sweep", "gait.yaml", "-o", "killed", "--quiet", by=how, after=lambda: (
+        os.path.exists(path("killed", "points.slots")) and time.monotonic() - begun > 0.1))
 check(os.path.exists(path("killed", "points.slots")) and
       not os.path.exists(path("killed", "table.csv")), "the search was not interrupted")
 run("sweep", "gait.yaml", "-o", "killed", "--quiet")

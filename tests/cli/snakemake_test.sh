@@ -1,20 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The Snakefile of the documents runs a study, its failed points included, and begins again where it ended.
-#
-#   sh snakemake_test.sh STRUT DOCUMENT
-command -v snakemake >/dev/null || {
-  echo "skipped: snakemake is not installed"
-  exit 77
-}
-document=$(realpath "$2")
+command -v snakemake >/dev/null || { echo "skipped: snakemake is not installed"; exit 77; }
 . "$(dirname "$0")/lib.sh"
 export HOME="$work" XDG_CACHE_HOME="$work/cache"
 PATH=$(dirname "$strut"):$PATH
 awk '/^<!-- Snakefile -->$/ { next_one = 1; next }
   inside && /^```/ { exit }
   inside { print }
-  next_one && /^```/ { inside = 1 }' "$document" >Snakefile
+  next_one && /^```/ { inside = 1 }' "$root/docs/how-to/cluster.md" >Snakefile
 [ -s Snakefile ] || fail "the document has no Snakefile"
 cp "$here/hopper.yaml" model.yaml
 yaml grounds.yaml <<'END'

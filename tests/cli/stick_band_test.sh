@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A stick band that a step passes over is reported by name, with the width it needs.
 . "$(dirname "$0")/lib.sh"
-belt=$2
+belt=$models/basics/belt.yaml
 
 expect 0 check "$belt"
 [ ! -s err ] || fail "the model's own band is wide enough"

@@ -4,10 +4,9 @@
 import os
 import shutil
 import signal
-import subprocess
 import time
 
-from testing import check, copy_models, finish, path, read, rows, run, strut, work, write
+from testing import check, copy_models, finish, path, read, rows, run, same_table, stopped, write
 
 copy_models()
 
@@ -39,14 +38,7 @@ def evaluations():
     check(good == [True, False, True, False, True, True, False, True], f"{good}")
     check(table[1]["status"] == "the work allowed was used up" and
           "work budget of 20000 force evaluations" in table[1]["message"], f"{table[1]}")
-    for words in (["--threads", "2"], ["--threads", "8"]):
-        run("sweep", "budget.yaml", "-o", "other", *words, code=3)
-        check(lines("other/table.csv") == lines("one/table.csv"), f"{words}: another table")
-        shutil.rmtree(path("other"))
-    for k in range(3):
-        run("sweep", "budget.yaml", "-o", "parts", "--shard", f"{k}/3", code=(3, 3, 0)[k])
-    run("sweep", "--merge", "parts", code=3)
-    check(lines("parts/table.csv") == lines("one/table.csv"), "shards: another table")
+    same_table("budget.yaml", "one", (2, 8), (3, 3, 0), code=3)
     # An accuracy has its own budget, which this one bounds.
     write("accurate.yaml", f"""strut: 1
 study: s
@@ -89,25 +81,16 @@ limit: {{time: 50 ms}}
     check("0.05 s by the clock" in rows("search/table.csv")[0]["message"], "a search is ended")
 
 
-def interrupted(send, wait):
-    """Ctrl-C: the rows that are done, byte for byte those of the whole table."""
-    shutil.rmtree(path("stopped"), ignore_errors=True)
-    child = subprocess.Popen([strut, "sweep", "long.yaml", "-o", "stopped", "--threads", "2"],
-                             cwd=work, stderr=subprocess.PIPE, text=True)
-    time.sleep(wait)
-    child.send_signal(send)
-    said = child.communicate()[1]
-    return said
-
-
 def partial():
+    """Ctrl-C: the rows that are done, byte for byte those of the whole table."""
     study("long", "axes: [{mass: {from: 1 kg, to: 2 kg, count: 200}}]\nset: {seconds: 100 s}\n"
                   "keep: [duration, velocity]\n")
     run("sweep", "long.yaml", "-o", "whole", "--quiet")
     whole = lines("whole/table.csv")
     check(not os.path.exists(path("whole/table-partial.csv")), "the whole table needs no partial one")
     for wait in (0.5, 1.0):
-        said = interrupted(signal.SIGINT, wait)
+        shutil.rmtree(path("stopped"), ignore_errors=True)
+        said = stopped("sweep", "long.yaml", "-o", "stopped", "--threads", "2", after=wait, by=signal.SIGINT).stderr
         if os.path.exists(path("stopped/table.csv")):
             print("    it was done before it could be interrupted")
             continue

@@ -6,7 +6,7 @@ import math
 import os
 import shutil
 
-from testing import check, finish, path, read, rows, run, write
+from testing import check, finish, path, read, rows, run, same_table, write
 
 
 write("block.yaml", """strut: 1
@@ -109,15 +109,7 @@ def samples():
 def same_bytes():
     axes = f"[{{sample: {{count: 40, scheme: lhs, over: {OVER}}}}}, {{place: [near, far]}}]"
     sweep("whole", axes)
-    table = read("whole/table.csv")
-    for words in (["--threads", "1"], ["--threads", "3"]):
-        shutil.rmtree(path("whole"))
-        sweep("whole", axes, *words)
-        check(read("whole/table.csv") == table, f"{words}: another table")
-    for k in (2, 0, 1):
-        run("sweep", "whole.yaml", "-o", "parts", "--quiet", "--shard", f"{k}/3")
-    run("sweep", "--merge", "parts")
-    check(read("parts/table.csv") == table, "shards: another table")
+    same_table("whole.yaml", "whole")
 
 
 def refused(axes, *said):

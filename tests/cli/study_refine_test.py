@@ -7,10 +7,8 @@ import os
 import random
 import shutil
 import signal
-import subprocess
-import time
 
-from testing import answer, check, copy_models, finish, path, read, rows, run, strut, work, write
+from testing import answer, check, copy_models, finish, path, read, rows, run, same_table, stopped, write
 
 
 copy_models()
@@ -63,10 +61,7 @@ def the_edge_is_found():
 
 def same_bytes():
     table = read("fine/table.csv")
-    for words in (["--threads", "1"], ["--threads", "3"]):
-        run("sweep", "fine.yaml", "-o", "other", "--quiet", *words)
-        check(read("other/table.csv") == table, f"{words}: another table")
-        shutil.rmtree(path("other"))
+    same_table("fine.yaml", "fine", shards=())
     # Shards in rounds, in any order, until no one waits for another.
     rounds = random.Random(1)
     for _ in range(12):
@@ -105,11 +100,8 @@ def emitted():
 def killed():
     table = read("fine/table.csv")
     for n in range(8):
-        child = subprocess.Popen([strut, "sweep", "fine.yaml", "-o", "killed", "--quiet"], cwd=work,
-                                 stderr=subprocess.DEVNULL)
-        time.sleep(random.Random(n).uniform(0.01, 0.25))
-        child.send_signal(signal.SIGKILL if n % 2 else signal.SIGINT)
-        child.wait()
+        stopped("sweep", "fine.yaml", "-o", "killed", "--quiet", after=random.Random(n).uniform(0.01, 0.25),
+                by=signal.SIGKILL if n % 2 else signal.SIGINT)
     run("sweep", "fine.yaml", "-o", "killed", "--quiet")
     check(read("killed/table.csv") == table, "kills: another table")
 

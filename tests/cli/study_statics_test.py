@@ -2,10 +2,8 @@
 # Studies of what is at rest: columns against closed forms and against the commands, structures whose
 # size differs from point to point, the same bytes whatever the threads and shards.
 import math
-import os
-import shutil
 
-from testing import answer, check, copy_models, finish, near, read, run, sweep, work, write
+from testing import answer, check, copy_models, finish, near, run, same_table, sweep, work, write
 
 copy_models()
 
@@ -69,11 +67,7 @@ def sizes():
     back = sweep("back", axes.replace("[2, 4, 20]", "[20, 4, 2]") + "keep: [positions]\n")
     check(back[0]["x_rod.7 [m]"] and not back[1]["x_rod.7 [m]"] and back[2]["x_rod.1 [m]"],
           "nodes that a point lacks are empty")
-    for other in (["--threads", "1"], ["--threads", "3"]):
-        shutil.rmtree(os.path.join(work, "back"))
-        before = back
-        back = sweep("back", axes.replace("[2, 4, 20]", "[20, 4, 2]") + "keep: [positions]\n", *other)
-        check(back == before, f"{other}: another table")
+    same_table("back-study.yaml", "back", shards=())
 
 
 def rigidity():
@@ -101,15 +95,7 @@ def equilibria():
     near(rows[0]["barrier_2 [J]"], top, "barrier", 1e-9)
     check(abs(float(rows[0]["energy_2 [J]"])) < 1e-12, "energy of the drawn shape")
     check(rows[1]["barrier_1 [J]"] == "" and rows[1]["state_2"] == "", "no way out, no second state")
-    table = read("two/table.csv")
-    for words in (["--threads", "1"], ["--threads", "2"]):
-        shutil.rmtree(os.path.join(work, "two"))
-        sweep("two", study, *words)
-        check(read("two/table.csv") == table, f"{words}: another table")
-    for k in range(2):
-        run("sweep", "two-study.yaml", "-o", "apart", "--quiet", "--shard", f"{k}/2")
-    run("sweep", "--merge", "apart")
-    check(read("apart/table.csv") == table, "shards: another table")
+    same_table("two-study.yaml", "two", (1, 2), (0, 0))
 
 
 FRAME = """strut: 1

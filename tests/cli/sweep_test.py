@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 
-from testing import answer, check, copy_models, finish, models, needs, read, rows, run, strut, sweep, work, write
+from testing import answer, check, copy_models, finish, models, needs, read, rows, run, same_table, stopped, strut, sweep, work, write
 
 needs("numpy")
 import numpy as np  # noqa: E402
@@ -148,17 +148,6 @@ def rows_are_single_runs():
     check(len({row["velocity [m/s]"] for row in table}) == len(table), "velocities are all alike")
 
 
-def the_same_bytes():
-    for threads in ("2", "4"):
-        run("sweep", "crawler.yaml", "-o", threads, "--threads", threads, "--quiet")
-        check(read(f"{threads}/table.csv") == read("one/table.csv"), f"{threads} threads: table")
-        check(read(f"{threads}/points.slots") == read("one/points.slots"), f"{threads} threads: slots")
-    for shard in ("0/2", "1/2"):
-        run("sweep", "crawler.yaml", "-o", "shards", "--shard", shard, "--quiet")
-    run("sweep", "--merge", "shards")
-    check(read("shards/table.csv") == read("one/table.csv"), "shards: table")
-
-
 # Points that fail or have other terms stand between those that go side by side; all are run twice.
 MIXED = """strut: 1
 study: mixed
@@ -194,6 +183,7 @@ def threads_change_nothing():
             run("sweep", f"{name}.yaml", "-o", folder, "--threads", f"{threads}", "--quiet", code=code)
             for file in ("table.csv", "points.slots"):
                 check(read(f"{folder}/{file}") == read(f"{name}-1/{file}"), f"{folder}/{file}")
+    same_table("crawler.yaml", "one", (), (0, 0))
     table = rows("mixed-1/table.csv")
     check(len(table) == 48 and [row["status"] for row in table].count("completed") == 24,
           "half of the mixed points fail")
@@ -208,10 +198,9 @@ def threads_change_nothing():
 def killed_and_resumed():
     before = 0
     for n in range(kills):
-        child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "killed", "--threads", "2", "--quiet"])
-        time.sleep(random.uniform(0.0, 0.25))
-        child.send_signal(signal.SIGKILL)
-        if child.wait() == 0:  # over before: once more from the beginning
+        child = stopped("sweep", "crawler.yaml", "-o", "killed", "--threads", "2", "--quiet",
+                        after=random.uniform(0.0, 0.25))
+        if child.returncode == 0:  # over before: once more from the beginning
             check(read("killed/table.csv") == read("one/table.csv"), f"after {n} kills: table")
             shutil.rmtree("killed")
             before = 0
@@ -244,13 +233,9 @@ def killed_while_recording():
     run("sweep", "motions.yaml", "-o", "recorded", "--quiet")
     left = 0
     for n in range(kills):
-        child = subprocess.Popen([strut, "sweep", "motions.yaml", "-o", "cut", "--threads", "2", "--quiet"])
-        deadline = time.monotonic() + 60
-        while child.poll() is None and not stages("cut") and time.monotonic() < deadline:
-            time.sleep(0.002)
-        time.sleep(random.uniform(0.0, 0.05))
-        child.send_signal(signal.SIGKILL)
-        child.wait()
+        chance = random.random()
+        stopped("sweep", "motions.yaml", "-o", "cut", "--threads", "2", "--quiet",
+                after=lambda: stages("cut") and random.random() < 0.1 + 0.9 * chance)
         left += len(stages("cut"))
         if os.path.exists("cut/points.slots") and n % 3 == 2:
             os.remove("cut/points.slots")  # begin anew, so that there is something to kill
@@ -274,17 +259,13 @@ def killed_while_recording():
 def interrupted():
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
     os.remove("stopped/points.slots")  # its table is that of an earlier sweep then
-    child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "stopped", "--threads", "1"],
-                             stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    path = "stopped/points.slots"
-    while child.poll() is None and not (os.path.exists(path) and os.path.getsize(path) > 6000):
-        time.sleep(0.001)
-    child.send_signal(signal.SIGINT)
-    _, err = child.communicate()
+    slots = "stopped/points.slots"
+    child = stopped("sweep", "crawler.yaml", "-o", "stopped", "--threads", "1", by=signal.SIGINT,
+                    after=lambda: os.path.exists(slots) and os.path.getsize(slots) > 6000)
     if child.returncode == 0:
         return  # it was over before
     check(child.returncode == 130, f"interrupted: exit code {child.returncode}")
-    check("the same command resumes" in err, f"interrupted: {err}")
+    check("the same command resumes" in child.stderr, f"interrupted: {child.stderr}")
     check(not os.path.exists("stopped/table.csv"), "an earlier table beside new points")
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
     check(read("stopped/table.csv") == read("one/table.csv"), "after an interrupt: table")
@@ -543,7 +524,7 @@ keep: [velocity]
     check(peak[1] < peak[0] + 3000, f"memory grows with the points: {peak} kB")
 
 
-for test in (points_are_those_of_numpy, warnings_are_counted, rows_are_single_runs, the_same_bytes,
+for test in (points_are_those_of_numpy, warnings_are_counted, rows_are_single_runs,
              threads_change_nothing, killed_and_resumed, interrupted, points_that_fail,
              failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
              trajectories, killed_while_recording,

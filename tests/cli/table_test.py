@@ -14,6 +14,7 @@ import sys
 import xml.etree.ElementTree as tree
 import zipfile
 
+import testing
 from testing import check, finish, strut, work, write
 
 root = os.getcwd()
@@ -67,9 +68,7 @@ axes: [{step: [0.1 ms, 10 ms]}, {start: [I, II]}]
 run: {periods: 20, measure: {last: 5}}
 keep: [velocity, motion]
 """)
-    done = subprocess.run([strut, "sweep", "fails.yaml", "-o", "fails", "--quiet"], cwd=work,
-                          capture_output=True, text=True)
-    check(done.returncode == 3, f"fails.yaml: exit code {done.returncode}: {done.stderr}")
+    testing.run("sweep", "fails.yaml", "-o", "fails", "--quiet", code=3)
     check("," in rows("fails/table.csv")[-1][-1], "a message with a comma would test more")
 
 

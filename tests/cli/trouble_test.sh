@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Trouble with files and streams: exit code 4, a reason, and nothing half done left behind.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 
 # The standard output.
 full() {

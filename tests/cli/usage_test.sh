@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The command line: commands, options, help, suggestions, exit codes 0, 1, 2 and 4.
 . "$(dirname "$0")/lib.sh"
-hopper=$here/hopper.yaml
 
 expect 1
 out_empty

@@ -71,7 +71,7 @@ expect 0 view swing.yaml --equilibria all -o again.html
 same model.html again.html
 
 # Ctrl-C while it searches: no page.
-timeout --preserve-status -s INT 0.1 "$strut" view "$here/../../models/crawler/crawler.yaml" -o stopped.html >out 2>err
+timeout --preserve-status -s INT 0.1 "$strut" view "$crawler" -o stopped.html >out 2>err
 [ $? -eq 130 ] || fail "Ctrl-C"
 absent stopped.html
 

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What is valid but hardly meant is reported: in check, in run and in check --json, once per cause.
 . "$(dirname "$0")/lib.sh"
-models=$2
 
 # once WORDS: one line of stderr has them.
 once() {

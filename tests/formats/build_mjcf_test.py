@@ -4,7 +4,6 @@
 # mujoco-js named by STRUT_MUJOCO_JS); what it cannot say is refused or listed.
 #
 #   python3 build_mjcf_test.py STRUT        (with the Python package of the same build)
-import csv
 import math
 import os
 import re
@@ -12,15 +11,10 @@ import shutil
 import subprocess
 import xml.etree.ElementTree as xml
 
-from testing import answer, check, finish, formats, models, path, run, write
+from testing import answer, check, finish, formats, models, path, rows, run, write
 
 here = os.path.dirname(os.path.realpath(__file__))
 SVG = "{http://www.w3.org/2000/svg}"
-
-
-def table(name):
-    with open(path(name), encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 # Names and a title that XML and DXF must each write in their own way; a cable over a guide; a driven spring.
@@ -71,26 +65,26 @@ def length_of(points):
 def build_list():
     out = formats("build", "frame.yaml", "-o", "build", "--allowance", "15 mm").stdout
     check("x-y" in out, "the table")
-    rows = {r["member"]: r for r in table("build/members.csv")}
+    members = {r["member"]: r for r in rows("build/members.csv")}
     made = {"bar": 0.310, "post": 0.4, "x-y": 0.5 - 10 / 500, "run": 0.78, "pull": 0.4}
     for name, value in made.items():
-        row = rows[name]
+        row = members[name]
         check(abs(float(row["made length [m]"]) - value) < 1e-12, f"{name} is made {row}")
         cable = row["kind"] == "cable"
         check(row["cut length [m]"] == "" if not cable
               else abs(float(row["cut length [m]"]) - value - 0.03) < 1e-12, f"{name} is cut {row}")
         check(row["driven"] == ("yes" if name == "pull" else "no"), f"driven: {row}")
-    check(rows["run"]["over"] == "b" and rows["bar"]["from"] == "a.1", "the nodes of members")
-    check(abs(float(rows["run"]["length in shape [m]"]) - 0.8) < 1e-12, "a length over a guide")
-    check(abs(float(rows["bar"]["force in shape [N]"]) + 10) < 1e-9, "the force of a pressed bar")
-    nodes = {r["node"]: r for r in table("build/nodes.csv")}
+    check(members["run"]["over"] == "b" and members["bar"]["from"] == "a.1", "the nodes of members")
+    check(abs(float(members["run"]["length in shape [m]"]) - 0.8) < 1e-12, "a length over a guide")
+    check(abs(float(members["bar"]["force in shape [N]"]) + 10) < 1e-9, "the force of a pressed bar")
+    nodes = {r["node"]: r for r in rows("build/nodes.csv")}
     check([nodes[n]["holes"] for n in ("a.1", "b", "ç")] == ["3", "4", "4"], f"holes: {nodes}")
     check(nodes["b"]["fixed"] == "y" and nodes["b"]["cables"] == "2", f"{nodes['b']}")
 
 
 def drawings_are_at_true_scale():
     lines, ruler, root = svg_lines("build/drawing.svg")
-    for name, row in ((r["member"], r) for r in table("build/members.csv")):
+    for name, row in ((r["member"], r) for r in rows("build/members.csv")):
         want = 1000 * float(row["length in shape [m]"])
         check(abs(length_of(lines[name]) - want) < 1e-4, f"{name} is {length_of(lines[name])} mm, not {want}")
     check(abs(ruler - 100) < 1e-9, f"the ruler has {ruler} mm")
@@ -201,9 +195,9 @@ run: {{duration: 3 s}}
 def vibrates_alike(simulate, kind):
     write("string.yaml", string_text(kind))
     formats("mjcf", "string.yaml", "-o", "string.xml")
-    names, rows = simulate("string.xml", 1e-3, 10)
+    names, motion = simulate("string.xml", 1e-3, 10)
     at = names.index("mid.y")
-    got = frequency([r[0] for r in rows], [r[at] for r in rows])
+    got = frequency([r[0] for r in motion], [r[at] for r in motion])
     exact = math.sqrt(2 * 20 / 1 / 1.0) / (2 * math.pi)  # 2 T / L over the mass and half of the members'
     modes = answer("modes", "string.yaml")
     ours = modes["modes"][0]["frequency"]
@@ -214,10 +208,10 @@ def vibrates_alike(simulate, kind):
 def moves_alike(simulate, text, seconds, tolerance, name):
     write(name, text)
     formats("mjcf", name, "-o", "motion.xml")
-    names, rows = simulate("motion.xml", 1e-4, seconds)
+    names, motion = simulate("motion.xml", 1e-4, seconds)
     run("run", name, "-o", "motion", "--quiet")
-    end = table("motion/nodes.csv")[-1]
-    for joint, value in zip(names[1:], rows[-1][1:]):
+    end = rows("motion/nodes.csv")[-1]
+    for joint, value in zip(names[1:], motion[-1][1:]):
         node, axis = joint.rsplit(".", 1)
         moved = float(end[f"{node}.{axis} [m]"]) - START[name][node]["xy".index(axis)]
         check(abs(moved - value) < tolerance, f"{name}: {joint} moved {value} in MuJoCo, {moved} in strut")

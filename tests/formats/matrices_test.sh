@@ -63,7 +63,6 @@ files n mass.mtx
 
 command -v octave-cli >/dev/null 2>&1 || exit 0
 cp "$here/mm.m" .
-crawler=$here/../../models/crawler/crawler.yaml
 formats 0 matrices "$crawler" -o c
 expect 0 modes "$crawler" --at drawn --json
 grep -o '"angular_frequency":[^,]*' out | tail -n 6 | cut -d: -f2 >own

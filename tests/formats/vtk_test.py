@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What `python3 -m strut.formats vtk` writes, read by VTK itself and compared with the run's CSV files.
 
-usage: vtk_test.py STRUT HOPPER
+usage: vtk_test.py STRUT
 """
-import csv
 import math
 import os
 import shutil
-import sys
 import xml.etree.ElementTree as ElementTree
 
-from testing import check, files_in, finish, formats, needs, run, work
+from testing import check, files_in, finish, formats, needs, numbers, run, work, write
 
 needs("vtkmodules")
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader  # noqa: E402
 
-hopper = os.path.abspath(sys.argv[2])
+hopper = os.path.abspath("tests/cli/hopper.yaml")
+with open(hopper, encoding="utf-8") as scene:
+    HOPPER = scene.read()
 os.chdir(work)
 
 
@@ -27,12 +27,6 @@ def read(path):
     reader.Update()
     check(not trouble, f"VTK cannot read {path}")
     return reader.GetOutput()
-
-
-def rows(path):
-    """The rows of a CSV file as {column without its unit: float}."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return [{key.rsplit(" [", 1)[0]: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
 def datasets(directory):
@@ -56,8 +50,8 @@ def test_run():
     """Every frame: the same bits as nodes.csv, members.csv and contacts.csv."""
     run("run", hopper, "--quiet", "-o", "run")
     said = formats("vtk", "run", "-o", "vtk").stdout
-    node_rows, member_rows = rows("run/nodes.csv"), rows("run/members.csv")
-    contact_rows = rows("run/contacts.csv")
+    node_rows, member_rows = numbers("run/nodes.csv"), numbers("run/members.csv")
+    contact_rows = numbers("run/contacts.csv")
     check(said.startswith(f"{len(node_rows)} frames"), said)
     listed = datasets("vtk")
     frames = [d for d in listed if d[1] == 0]
@@ -120,8 +114,7 @@ def test_model():
 
 
 def test_names_and_no_members():
-    with open("ball.yaml", "w", encoding="utf-8") as file:
-        file.write("strut: 1\nnodes:\n  כדור: {position: [1, 2], mass: 1}\n  ü-1: {position: [3, 4], " "mass: 1}\n")
+    write("ball.yaml", "strut: 1\nnodes:\n  כדור: {position: [1, 2], mass: 1}\n  ü-1: {position: [3, 4], mass: 1}\n")
     formats("vtk", "ball.yaml", "-o", "ball")
     data = read("ball/structure_00000.vtp")
     check(names(data, "node_names") == ["כדור", "ü-1"], "names")
@@ -130,15 +123,13 @@ def test_names_and_no_members():
 
 def test_thinning():
     """Above ten thousand frames every so many-th is written, and that is said."""
-    with open(hopper, encoding="utf-8") as file:
-        text = file.read().replace("every: 1 ms", "every: 0.02 ms").replace("step: 0.1 ms", "step: 0.02 ms")
-    with open("fine.yaml", "w", encoding="utf-8") as file:
-        file.write(text.replace("velocity, length, force, contact, energy", "force"))
+    text = HOPPER.replace("every: 1 ms", "every: 0.02 ms").replace("step: 0.1 ms", "step: 0.02 ms")
+    write("fine.yaml", text.replace("velocity, length, force, contact, energy", "force"))
     run("run", "fine.yaml", "--quiet", "-o", "fine")
     said = formats("vtk", "fine", "-o", "thin").stdout
     listed = [d for d in datasets("thin") if d[1] == 0]
     check(len(listed) == 8334 and "8334 frames" in said and "from 25001 recorded" in said, said)
-    times = [r["time"] for r in rows("fine/nodes.csv")]
+    times = [r["time"] for r in numbers("fine/nodes.csv")]
     check([d[0] for d in listed] == times[::3], "which frames")
     check(read("thin/structure_00000.vtp").GetPointData().GetArray("velocity") is None, "velocity")
 
@@ -161,16 +152,13 @@ def test_trouble():
     check("holds no run" in formats("vtk", "half", "-o", "x", code=4).stderr, "half")
     shutil.copy("run/summary.json", "half")
     for table in (b"no table", b"time [s],foot.x [m]\n0,zero\n", b"\xff"):
-        with open("half/nodes.csv", "wb") as file:
-            file.write(table)
+        write("half/nodes.csv", table)
         check("nodes.csv" in formats("vtk", "half", "-o", "x", code=4).stderr, "half a table")
     os.mkdir("vtk/structure_00001.vtp")
     shutil.move("vtk/structure.pvd", "kept.pvd")
     formats("vtk", "run", "-o", "vtk", code=4)
     check(not os.path.exists("vtk/structure.pvd"), "a part of an export")
-    with open("still.yaml", "w", encoding="utf-8") as file:
-        with open(hopper, encoding="utf-8") as old:
-            file.write(old.read().replace("position, velocity, length, force", "force"))
+    write("still.yaml", HOPPER.replace("position, velocity, length, force", "force"))
     run("run", "still.yaml", "--quiet", "-o", "still")
     said = formats("vtk", "still", "-o", "x", code=4).stderr
     check("position" in said, said)
@@ -178,5 +166,4 @@ def test_trouble():
 
 for test in [test_run, test_model, test_names_and_no_members, test_thinning, test_trouble]:
     test()
-os.chdir("/")
 finish()

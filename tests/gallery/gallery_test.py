@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-r"""Every known answer about the structures of models/gallery and models/parts, asked of the program with --json.
+r"""Every known answer about the structures of models/gallery and models/parts, by --json.
 
   gallery_test.py STRUT [NAME...]     NAMEs: only these models
 
-A section of a file tests/gallery/*.answers belongs to the NAME.yaml of one of the two, or of models. Its lines:
+A section of a file tests/gallery/*.answers is of the NAME.yaml of one of the two, or of models:
 
   [NAME]
   # a comment
   COMMAND [OPTIONS...] [%VARIANT] | FILTER | EXPECTED | TOLERANCE
   %VARIANT = SED-SCRIPT
 
-The first runs `strut COMMAND MODEL OPTIONS... --json`, puts its output through the jq filter (which may contain |, may
-use tests/gallery/gallery.jq, and gives one value) and compares. TOLERANCE is absolute; EXPECTED then is a number, a list
-or a mapping of numbers, as jq writes or computes them (without any |):
+The first runs `strut COMMAND MODEL OPTIONS... --json`, puts its output through the jq filter
+(which may contain |, may use tests/gallery/gallery.jq, and gives one value) and compares. TOLERANCE
+is absolute; EXPECTED then is a number, a list or a mapping of numbers, as jq writes or computes
+them (without any |):
   0.995454545, (95 + 1000)/1100, root(2*3), [1, 2.5, 1e-3], {n1: [0, 1], n2: (1/3)}
 With the TOLERANCE `=` the filter's value, as a text, must be EXPECTED to the letter:
   rigidity | .class | 1 | =        equilibria | stable | 1 | =       equilibria | .remark | null | =
@@ -20,8 +21,8 @@ A command that fails gives {"status": its exit status, "message": what it said}:
   modes --set load=20 | .status | 3 | =
 The second line makes a variant of the scene by sed, for what a parameter cannot change:
   %free = s/fixed: [a-z]*/mass: 1/
-A line that ends with a backslash goes on in the next. A line without a command asks that of the line before, and so does
-what follows a ` ;; `: FILTER | EXPECTED | TOLERANCE. Each command is run once.
+A line that ends with a backslash goes on in the next. A line without a command asks that of the
+line before, and so does what follows a ` ;; `: FILTER | EXPECTED | TOLERANCE.
 """
 import glob
 import json
@@ -100,7 +101,8 @@ def find_wrong(model, lines):
             wrong[questions[0][0]] = f"{command}: no variant {missing}"
             continue
         answer = ask(model, command, variants)
-        for (number, question), what in zip(questions, judge(answer, [question for _, question in questions])):
+        verdicts = judge(answer, [question for _, question in questions])
+        for (number, question), what in zip(questions, verdicts):
             if what:
                 wrong[number] = f"{command}: {question[0]}: {what} {json.loads(answer).get('message', '')}"
     return sum(map(len, asked.values())), wrong
@@ -134,7 +136,7 @@ check | .members.m.drawn_length | 5
 check | .members.( | 5 | 1
 check | .name | itself | = ;; .members.m.stiffness | 2 | 0
 """
-check(find_wrong(path("self.yaml"), logical_lines(GOOD)) == (6, {}), "the test of itself: a right answer is wrong")
+check(find_wrong(path("self.yaml"), logical_lines(GOOD)) == (6, {}), "a right answer is found wrong")
 noticed = find_wrong(path("self.yaml"), logical_lines(BAD))[1]
 check(noticed.keys() == set(range(1, 12)), f"the test of itself notices only {noticed}")
 
@@ -156,7 +158,8 @@ for folder in ("gallery", "parts"):
 for name, (file, lines) in sections.items():
     if name not in (sys.argv[2:] or sections):
         continue
-    found = [model for folder in ("gallery/", "parts/", "") if os.path.exists(model := f"{models}/{folder}{name}.yaml")]
+    places = [f"{models}/{folder}{name}.yaml" for folder in ("gallery/", "parts/", "")]
+    found = [place for place in places if os.path.exists(place)]
     if not found:
         fail(f"{file}: there is no {name}.yaml")
         continue

@@ -15,18 +15,12 @@ from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from testing import check
 
 os.environ.setdefault("SE_OFFLINE", "true")  # Selenium is not to look for drivers elsewhere
 folder = pathlib.Path(sys.argv[1]).resolve()
 saved = folder / "saved"
 SVG = "{http://www.w3.org/2000/svg}"
-failures = []
-
-
-def check(good, what):
-    if not good:
-        failures.append(what)
-        print("FAILED:", what)
 
 
 def browser(width, height):

@@ -7,14 +7,14 @@ python3 page_test.py FOLDER, which page_test.sh fills.
 import csv
 import json
 import struct
-import sys
 import time
 
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from page_driver import (SVG, browser, check, check_silence, clock, failures, files_of, folder, ink,
-                         open_page, press_save, recorded, run, saved_svg, wait_for_drawing)
+from page_driver import (SVG, browser, check_silence, clock, files_of, folder, ink, open_page, press_save,
+                         recorded, run, saved_svg, wait_for_drawing)
+from testing import check, finish
 
 
 def check_numbers(driver, name, rows, nodes):
@@ -535,38 +535,33 @@ def check_run(driver, width):
     check_silence(driver, "crawler.html")
 
 
-def main():
-    for width, height in ((1280, 800), (360, 780)):
-        driver = browser(width, height)
-        try:
-            check_run(driver, width)
-            if width > 1000:
-                open_page(driver, "two-mass.html")
-                check_numbers(driver, "two-mass.html", recorded("two-mass"), 2)
-                check_player(driver, "two-mass.html")
-                check_silence(driver, "two-mass.html")
-                open_page(driver, "model.html")
-                wait_for_drawing(driver)
-                check(ink(driver) > 200 and run(driver, "strut.frames") == 0,
-                      "model.html: a model at rest is not drawn")
-                check_kinds(driver)
-                check_silence(driver, "model.html")
-                check_panels(driver)
-                check_choices(driver)
-                check_texts(driver)
-                check_downloads(driver)
-                check_two(driver)
-                check_again(driver)
-                check_empty(driver)
-                check_hostile(driver)
-                check_damaged(driver)
-                check_data(driver)
-            else:
-                check_narrow(driver, 400)
-        finally:
-            driver.quit()
-    print(f"{len(failures)} failures")
-    return 1 if failures else 0
-
-
-sys.exit(main())
+for width, height in ((1280, 800), (360, 780)):
+    driver = browser(width, height)
+    try:
+        check_run(driver, width)
+        if width > 1000:
+            open_page(driver, "two-mass.html")
+            check_numbers(driver, "two-mass.html", recorded("two-mass"), 2)
+            check_player(driver, "two-mass.html")
+            check_silence(driver, "two-mass.html")
+            open_page(driver, "model.html")
+            wait_for_drawing(driver)
+            check(ink(driver) > 200 and run(driver, "strut.frames") == 0,
+                  "model.html: a model at rest is not drawn")
+            check_kinds(driver)
+            check_silence(driver, "model.html")
+            check_panels(driver)
+            check_choices(driver)
+            check_texts(driver)
+            check_downloads(driver)
+            check_two(driver)
+            check_again(driver)
+            check_empty(driver)
+            check_hostile(driver)
+            check_damaged(driver)
+            check_data(driver)
+        else:
+            check_narrow(driver, 400)
+    finally:
+        driver.quit()
+finish()

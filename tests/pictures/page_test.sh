@@ -75,4 +75,4 @@ END
 printf 't [s],b.x [mm],m.force [N],m.length [s]\n0.9005,998,0.5,1\n0.5,,0.4,1\n0.25,985,0.3,1\n2,990,0.3,1\n' >film.csv
 "$strut" run spring.yaml --quiet -o spring
 "$strut" view spring --quiet -o spring.html
-"$python" "$root/tests/pictures/page_test.py" "$work"
+PYTHONPATH=$root/tests/support "$python" "$root/tests/pictures/page_test.py" "$work"

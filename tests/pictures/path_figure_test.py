@@ -14,8 +14,9 @@ os.chdir(work)
 
 def dots(paths):
     """Where the dots are."""
-    return [middle(line) for path in paths if path.curved and path.fill and not near(path.fill, (1, 1, 1))
-            for line in path.lines if max(p[0] for p in line) - min(p[0] for p in line) < 6]
+    filled = [path for path in paths if path.curved and path.fill and not near(path.fill, (1, 1, 1))]
+    return [middle(line) for path in filled for line in path.lines
+            if max(p[0] for p in line) - min(p[0] for p in line) < 6]
 
 
 def check_curve(what, paths, rows, column, sign, height="factor", upright=False):
@@ -77,7 +78,7 @@ def check_shapes(what, paths, answer, members, larger):
 
 
 def check_figure(model, *words, column, sign=-1, larger=1, height="factor", upright=False):
-    """larger: how many times as far as in path.json shapes have gone; 0: shapes overlap the curve."""
+    """larger: how many times as far as in path.json shapes have gone; 0: they overlap the curve."""
     what = f"{model} {' '.join(words)}"
     answer = testing.answer("path", f"{GALLERY}/{model}.yaml", *words, "--plot", "a.svg", "-o", work)
     table = rows("path.csv")

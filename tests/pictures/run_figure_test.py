@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """strut run --plot: what is drawn is where nodes.csv of the same run says that the nodes are."""
 import csv
+import itertools
 import json
 import math
 import os
 import re
 import signal
-import subprocess
-import time
 
 import testing
 from svg_paths import Window, circles, distance, has_segment, near, read, segments, texts
-from testing import check, exported, fail, finish, models, strut, work, write
+from testing import check, exported, fail, finish, models, stopped, work, write
 
 EDGE, PALE = (0.1, 0.1, 0.1), (0.72, 0.72, 0.72)
 os.chdir(work)
@@ -242,16 +241,9 @@ def check_stopped():
         os.remove("stopped.svg")
     run("short.yaml", *wrong, code=3, err="nothing to draw")  # it did not come to the last periods
     write("endless.yaml", wild.replace("periods: 20", "periods: 1000000"))
-    before = os.listdir(".")
-    child = subprocess.Popen([strut, "run", "endless.yaml", "-q", "-o", "far", "--plot", "stopped.svg"],
-                             stderr=subprocess.PIPE, text=True)
-    for _ in range(300):  # it watches for signals before it makes files
-        if os.listdir(".") != before:
-            break
-        time.sleep(0.1)
-    time.sleep(0.3)
-    child.send_signal(signal.SIGINT)
-    child.communicate(timeout=60)
+    before, looks = os.listdir("."), itertools.count()
+    stopped("run", "endless.yaml", "-q", "-o", "far", "--plot", "stopped.svg", by=signal.SIGINT,
+            after=lambda: os.listdir(".") != before and next(looks) > 150)  # 0.3 s after its first file
     check(os.path.exists("stopped.svg"), "a run that was stopped is not drawn")
 
 

@@ -122,18 +122,19 @@ def middle(line):
 
 def circles(paths, stroke):
     """Centres of the nodes drawn with that edge, in their order."""
-    return [middle(line) for path in paths if path.curved and near(path.stroke, stroke) and near(path.fill, (1, 1, 1))
-            for line in path.lines]
+    return [middle(line) for path in paths for line in path.lines
+            if path.curved and near(path.stroke, stroke) and near(path.fill, (1, 1, 1))]
 
 
 class Window:
-    """Where places [m] are on the page, upright: from where two of them are drawn that are far apart."""
+    """Where places [m] are on the page, upright: by where two of them are drawn that are far apart."""
 
     def __init__(self, places, drawn):
         pairs = [(math.dist(places[i], places[k]), i, k) for i in range(len(places)) for k in range(i)]
         apart, i, k = max(pairs)
         self.scale = math.dist(drawn[i], drawn[k]) / apart
-        self.left, self.top = drawn[i][0] - self.scale * places[i][0], drawn[i][1] + self.scale * places[i][1]
+        self.left = drawn[i][0] - self.scale * places[i][0]
+        self.top = drawn[i][1] + self.scale * places[i][1]
         self.worst = max(math.dist(self.on_page(place), at) for place, at in zip(places, drawn))
 
     def on_page(self, place):

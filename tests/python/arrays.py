@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """For tests of the Python package with arrays: they are skipped where numpy is not installed."""
 
-from support import MODELS, main, program, skip_without
+from support import MODELS, interrupt, main, program, skip_without
 
 skip_without("numpy")
 
@@ -10,4 +10,4 @@ import numpy as np  # noqa: E402
 import strut  # noqa: E402
 
 CRAWLER = MODELS / "crawler/crawler.yaml"
-__all__ = ["CRAWLER", "MODELS", "main", "np", "program", "strut"]
+__all__ = ["CRAWLER", "MODELS", "interrupt", "main", "np", "program", "strut"]

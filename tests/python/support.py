@@ -4,10 +4,14 @@
     PYTHONPATH=BUILD/python python3 -X dev -W error tests/python/NAME_test.py PROGRAM
 """
 
+import collections.abc
 import os
 import pathlib
+import signal
 import subprocess
 import sys
+import threading
+import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -21,6 +25,29 @@ def program(*words: object, code: int = 0) -> str:
     if done.returncode != code:
         raise AssertionError(f"strut {words}: {done.returncode}, expected {code}: {done.stderr}")
     return done.stdout
+
+
+def interrupt(call: collections.abc.Callable, after: float) -> KeyboardInterrupt:
+    """What the call raises, by Ctrl-C after a while; within a second, on an idle machine 0.2 s."""
+    sent = []
+
+    def press() -> None:
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(after, press)
+    timer.start()
+    try:
+        call()
+    except KeyboardInterrupt as error:
+        took = time.monotonic() - sent[0]
+        print(f"interrupted in {took:.3f} s", flush=True)
+        if took < 1.0:
+            return error
+        raise AssertionError(f"it took {took} s") from error
+    finally:
+        timer.join()
+    raise AssertionError("it was not interrupted")
 
 
 def skip_without(*modules: str) -> None:

@@ -8,9 +8,11 @@ import json
 import math
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 strut = os.path.realpath(sys.argv[1])
 models = os.path.realpath("models")
@@ -67,6 +69,11 @@ def rows(*names):
         return list(csv.DictReader(file))
 
 
+def numbers(*names):
+    """The same as numbers, under the columns' names without their units."""
+    return [{key.rsplit(" [", 1)[0]: float(value) for key, value in row.items()} for row in rows(*names)]
+
+
 def run(*words, code=0, err="", timeout=120, stdin="", env=None):
     """Runs strut in the folder of the test, with `env` beside its own environment; what it printed. Its exit code is to
     be `code`, and its messages are to have `err`."""
@@ -75,6 +82,19 @@ def run(*words, code=0, err="", timeout=120, stdin="", env=None):
     check(done.returncode == code and err in done.stderr,
           f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
+
+
+def stopped(*words, after, by=signal.SIGKILL):
+    """As run, but ended by a signal after so many seconds, or as soon as `after()` holds."""
+    child = subprocess.Popen([strut, *words], cwd=work, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    begun = time.monotonic()
+    while child.poll() is None and time.monotonic() - begun < 60:
+        if after() if callable(after) else time.monotonic() - begun >= after:
+            break
+        time.sleep(0.002)
+    child.send_signal(by)
+    out, err = child.communicate(timeout=120)
+    return subprocess.CompletedProcess(words, child.returncode, out, err)
 
 
 def answer(*words, **how):
@@ -108,6 +128,20 @@ def sweep(name, text, *words, code=0):
     write(f"{name}-study.yaml", "strut: 1\nstudy: s\n" + text)
     run("sweep", f"{name}-study.yaml", "-o", name, "--quiet", *words, code=code)
     return rows(name, "table.csv")
+
+
+def same_table(study, folder, threads=(1, 3), shards=(0, 0, 0), code=0):
+    """The study has the table of the folder by any number of threads, and by shards, which end with
+    these exit codes and are merged."""
+    wanted = read(folder, "table.csv")
+    for count in threads:
+        run("sweep", study, "-o", f"{folder}-by-{count}", "--quiet", "--threads", str(count), code=code)
+        check(read(f"{folder}-by-{count}", "table.csv") == wanted, f"{study}: another table by {count} threads")
+    for k, end in reversed(list(enumerate(shards))):
+        run("sweep", study, "-o", f"{folder}-parts", "--quiet", "--shard", f"{k}/{len(shards)}", code=end)
+    if shards:
+        run("sweep", "--merge", f"{folder}-parts", code=code)
+        check(read(f"{folder}-parts", "table.csv") == wanted, f"{study}: another table by shards")
 
 
 def files_in(folder):
