@@ -4,10 +4,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 
-/*
- * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
- * the cheapest step there is.
- */
+/* Semi-implicit (symplectic) Euler: v += h a(q, v), q += h v. Of first order, the cheapest step there is. */
 
 static void *euler_create(const strut_model *model, strut_state *state,
                           const strut_integrator_settings *settings) {

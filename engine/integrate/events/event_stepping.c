@@ -242,10 +242,7 @@ static void release_kink(const strut_model *model, strut_state *state, strut_eve
   if (!state->forced.count++) state->forced.first = piece->t;
 }
 
-/*
- * Predicts positions, where the method knows them before it knows forces. A touchdown or an opening on the way ends
- * the piece.
- */
+/* Predicts positions, where the method knows them before forces. A touchdown or opening on the way ends the piece. */
 static void predict_piece(const strut_model *model, const strut_state *state,
                           strut_event_stepper *stepper, step_piece *piece) {
   const strut_step_formula *formula = stepper->formula;

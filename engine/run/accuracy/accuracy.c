@@ -17,10 +17,7 @@ static const double STEP_OF_TURN = 0.1;
 /* Velocities below this part of size over time are not measured relative to themselves. */
 static const double STANDSTILL = 1e-3;
 
-/*
- * A fine run with fixed steps has four steps for each step of the coarse method, of four
- * evaluations each. The budget counts in such runs.
- */
+/* The budget counts in fine runs: four steps for each step of the coarse method, of four evaluations each. */
 static const double FINE_STEPS = 4.0, FINE_EVALUATIONS = 4.0;
 /* Work that is always allowed, in evaluations times nodes and members [1]. */
 static const double LEAST_WORK = 4e7;

@@ -201,10 +201,7 @@ static void repeat_with_finer_tolerance(strut_orbit_solve *solve) {
   }
 }
 
-/*
- * Corrects the orbit once by a period with a tenth of the tolerance; where that changes it too
- * much, runs on with that tolerance.
- */
+/* Corrects the orbit by a period with a tenth of the tolerance; where that changes it too much, runs on with that. */
 static void correct_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   strut_period_map *coarse = &solve->coarse_map, map = {.model = NULL};
@@ -352,10 +349,7 @@ static int64_t sum_evaluations(const strut_orbit_solve *solve) {
          solve->last_run.spent.evaluations;
 }
 
-/*
- * Makes the summary that of the whole motion from t = 0: up to the orbit, then along it, as `orbit` is, whose
- * works and losses are over all of it already.
- */
+/* Makes the summary that of the whole motion from t = 0: up to the orbit, then along it. */
 static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summary *orbit,
                               strut_summary *summary) {
   const strut_snapshot *from = solve->a->options->from;

@@ -92,10 +92,7 @@ void strut_orbit_place_copy(const strut_orbit_solve *solve, const strut_orbit_pl
 /** The place as the start or the end of a run. */
 strut_snapshot strut_orbit_place_snapshot(const strut_orbit_solve *solve,
                                           const strut_orbit_place *place);
-/**
- * Turns the status of map evaluations into that of the search: out of memory, over budget, or interrupted. False: it
- * is over.
- */
+/** Turns the status of map evaluations into that of the search. False: it is over. */
 bool strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status);
 /** A state (both) in the arena; NULL: out of memory, which the status says. */
 double *strut_orbit_solve_array(strut_orbit_solve *solve);
