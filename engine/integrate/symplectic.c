@@ -56,10 +56,7 @@ const strut_integrator strut_integrator_euler = {
     .advance = euler_advance,
 };
 
-/*
- * Velocity Verlet with a fixed step and one evaluation of the forces per step. Forces that depend on
- * velocities see the predicted v + h a, which keeps the second order.
- */
+/* Velocity Verlet with a fixed step; forces see the predicted velocity v + h a, which keeps the second order. */
 
 /* Accelerations at both ends of a step, predicted velocities, and the powers at its begin. */
 typedef struct verlet_workspace {

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * How accurate the latest of several runs is: two must agree, not only in the velocity, which may agree by chance, but
- * as motions. And what is said of it.
- */
+/* How accurate the latest of several runs is, and what is said of it: two must agree as motions, not by chance. */
 #include <stdio.h>
 
 #include "engine/integrate/integrator.h"

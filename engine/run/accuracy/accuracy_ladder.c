@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * A wanted accuracy by repetition: ever finer runs until two agree. Method, tolerance and longest step all change
- * between runs, so that agreement is not a shared error.
- */
+/* A wanted accuracy by repetition: ever finer runs, which differ in all settings, until two agree. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>

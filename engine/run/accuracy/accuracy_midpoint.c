@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * A wanted accuracy by implicit midpoint, for scenes whose stiff members keep explicit steps far
- * below the motion.
- */
+/* A wanted accuracy by implicit midpoint, where stiff members keep explicit steps far below the motion. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * A wanted accuracy by the periodic orbit: the coarse method comes near it, the reference method
- * corrects it.
- */
+/* A wanted accuracy by the periodic orbit: the coarse method comes near it, the reference method corrects it. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -74,10 +71,7 @@ static double coarse_tolerance(const strut_accuracy *accuracy) {
   return fmax(0.1, 16.0 * accuracy->target);
 }
 
-/*
- * The step is chosen for the start; where the structure becomes so stiff that the step is too large, the run is
- * repeated with a step for the stiffest shape so far.
- */
+/* The step is for the start; where the structure becomes stiffer, the run is repeated with a step for that. */
 static void run_coarse_from_start(strut_orbit_solve *solve, double periods) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *run = &solve->coarse_run;

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Finding the periodic orbit for a wanted accuracy: state and steps shared by accuracy_orbit.c and
- * orbit_solve.c.
- */
+/** Finding the periodic orbit for a wanted accuracy: state and steps shared by accuracy_orbit.c and orbit_solve.c. */
 #pragma once
 
 #include "engine/run/accuracy/accuracy.h"
@@ -118,10 +115,7 @@ void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_ans
 
 /* orbit_means.c: motions that do not repeat themselves. */
 
-/**
- * Runs the coarse method on until its motion is periodic or not. True: it became so after all, and
- * solve->end is on its orbit. An irregular motion is averaged.
- */
+/** Runs the coarse method on until periodic (true: solve->end is on the orbit) or not: then it is averaged. */
 bool strut_orbit_solve_average_irregular(strut_orbit_solve *solve);
 /**
  * The reference method (solve->last_run) did not become periodic, the coarse one did: the mean velocity by the

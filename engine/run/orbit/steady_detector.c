@@ -21,10 +21,7 @@ enum { LEAST_PERIODS = 24 };
 enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
 static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
-/*
- * Periods over which a motion must creep, in batches of three; factor of its changes over half of them that
- * is the beginning of another motion, or the end of a transient.
- */
+/* Periods over which a motion must creep; changes over half of them by this factor begin or end a motion. */
 enum { CREEP_PERIODS = 3 * BATCHES };
 static const double CREEP_CHANGE = 1.5;
 /* Part of the velocity below which motions creep; repetitions of several periods must agree to the other. */
@@ -119,10 +116,7 @@ void strut_steady_detector_half_period(const strut_state *state, strut_steady_de
   copy_state(state, detector, detector->latest.middle);
 }
 
-/*
- * The rest of a decay: the geometric series that continues the latest change. The rate follows from
- * whole repetitions, since changes differ between the periods of one.
- */
+/* The rest of a decay: the geometric series of the latest change, at a rate by whole repetitions. */
 static double remaining_decay(const double *residual, int64_t now, int32_t n, int32_t over,
                               double amplitude) {
   int32_t rounds = (over + n - 1) / n;
@@ -327,10 +321,7 @@ static double batch_mean(const strut_steady_detector *detector, int32_t each, do
   return mean;
 }
 
-/*
- * Is the mean difference of neighbouring periods the same in the latest 8 batches of `each`
- * intervals as in the 8 before, to 2 % or within the scatter of the batches?
- */
+/* Do neighbouring periods differ as much in the latest 8 batches as in the 8 before, to 2 % or their scatter? */
 static bool wanders_evenly(const strut_steady_detector *detector, int32_t each) {
   double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
   for (int i = 0; i < 2 * BATCHES; i++) {
