@@ -372,6 +372,13 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
   keep_materials(model, state, i, &c);
 }
 
+void strut_capstan_place(const strut_model *model, strut_state *state, int32_t i, const double *q) {
+  cable c;
+  measure_kept(model, state, i, q, &c);
+  settle(&c);
+  keep_materials(model, state, i, &c);
+}
+
 void strut_capstan_keep(const strut_model *model, strut_state *state, int32_t i, const double *q) {
   cable c;
   bool frozen = stand(model, state, i, q, &c);

@@ -39,6 +39,8 @@ void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i
     length has `jumped`, that is the energy set free. */
 void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q,
                          bool jumped);
+/** Materials at q by the tensions; nothing is lost. */
+void strut_capstan_place(const strut_model *model, strut_state *state, int32_t i, const double *q);
 /** Materials after a step in frozen modes, at q. */
 void strut_capstan_keep(const strut_model *model, strut_state *state, int32_t i, const double *q);
 /** Modes by the tensions and the flows at q and v, of which those of the tensions are renewed. */

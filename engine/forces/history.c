@@ -278,9 +278,12 @@ void strut_history_place(const strut_model *model, strut_state *state, const dou
   if (frozen || state->forgetful) return;
   strut_drive_apply(model, state, t);
   for (int32_t m = 0; m < table->history_count; m++) {
-    const strut_element *element = &table->element[table->memory[m]];
-    if (yields(element) && !strut_element_is_gone(state->latest->rest[element->slot]))
-      strut_slider_return(model, state, table->memory[m], state->q, false);
+    int32_t i = table->memory[m];
+    const strut_element *element = &table->element[i];
+    if (strut_element_is_gone(state->latest->rest[element->slot])) continue;
+    if (strut_capstan_remembers(element, state->latest->rest))
+      strut_capstan_place(model, state, i, state->q);
+    if (yields(element)) strut_slider_return(model, state, i, state->q, false);
   }
 }
 

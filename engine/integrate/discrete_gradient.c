@@ -188,10 +188,7 @@ static double part_beyond(const strut_element *element, double stretch0, double 
   return s0 > 0.0 || s1 > 0.0 ? fmax(s0, s1) / fabs(s1 - s0) : 0.0;
 }
 
-/*
- * Gonzalez's discrete gradient of a strain: that half-way, corrected along the displacement so that its
- * work is the change of the strain.
- */
+/* Gonzalez's discrete gradient of a strain: that half-way, corrected so that its work is the change of the strain. */
 static void add_element(const strut_model *model, const strut_state *state,
                         strut_discrete_gradient *step, int32_t i, const double *restrict q0,
                         const double *restrict q1) {

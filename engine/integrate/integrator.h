@@ -92,10 +92,7 @@ STRUT_API int32_t strut_first_exact_contact(const strut_model *model);
 STRUT_API void strut_integrator_advance(const strut_integrator *method, const strut_model *model,
                                         strut_state *state, void *workspace, double dt,
                                         int64_t count);
-/**
- * Do the samples of all sampled signals fall on the grid of a method without events? STRUT_USAGE where
- * not, with a step for which they do.
- */
+/** Do all sampled signals fall on the grid of a method without events? STRUT_USAGE: no, with a step that fits. */
 STRUT_API strut_status strut_integrator_check_samples(const strut_integrator *method,
                                                       const strut_model *model, double dt,
                                                       strut_error *error);

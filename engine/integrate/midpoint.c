@@ -463,10 +463,7 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
   if (workspace->known < 2) workspace->known++;
 }
 
-/*
- * A step, or where that has no solution its halves: cables that go slack and taut may chase Newton's
- * method round in circles, which seldom happens twice at one place.
- */
+/* A step, or where that has no solution its halves: cables may chase Newton's method round in circles. */
 static bool take(const strut_model *model, strut_state *state, midpoint_workspace *workspace,
                  double begin, double h, int halvings) {
   strut_discrete_gradient_begin(model, state, state->q, begin, h, &workspace->step);

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * The classical Runge-Kutta method of fourth order with a fixed step, as the paper uses it: the
- * force law, contact and friction included, is evaluated at every stage.
- */
+/* The classical Runge-Kutta method with a fixed step, as in the paper: forces at every stage. */
 #include "engine/forces/history.h"
 #include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"

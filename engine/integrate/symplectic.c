@@ -4,10 +4,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 
-/*
- * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
- * the cheapest step there is.
- */
+/* Semi-implicit (symplectic) Euler: v += h a(q, v), q += h v. Of first order, the cheapest step there is. */
 
 static void *euler_create(const strut_model *model, strut_state *state,
                           const strut_integrator_settings *settings) {
@@ -59,10 +56,7 @@ const strut_integrator strut_integrator_euler = {
     .advance = euler_advance,
 };
 
-/*
- * Velocity Verlet with a fixed step and one evaluation of the forces per step. Forces that depend on
- * velocities see the predicted v + h a, which keeps the second order.
- */
+/* Velocity Verlet with a fixed step; forces see the predicted velocity v + h a, which keeps the second order. */
 
 /* Accelerations at both ends of a step, predicted velocities, and the powers at its begin. */
 typedef struct verlet_workspace {

@@ -39,6 +39,13 @@ for method in rk4-events rk4; do
   gives .measured.down.value "$(jq .measured.down.value out)" 1e-12 run atwood.yaml --set mu=1e-15 --integrator $method
 done
 
+# Rows between steps have the energy of the materials there, also just after the rope becomes taut.
+sed 's/stiffness: c, pretension: 9.81 N/stiffness: 2000, rest_length: 1.6 m/; s/0.3,$/0.4,/; s/rk4-events/rk4/
+  s/^gravity.*/&\noutput: {every: 0.1 ms, channels: [energy]}/' atwood.yaml >falls.yaml
+expect 0 run falls.yaml -q -o falls
+awk -F, 'NR > 1 { sum = $2 + $3 + $4 + $10; low = n ? (sum < low ? sum : low) : sum; high = n++ ? (sum > high ? sum : high) : sum }
+  END { exit !(n > 3900 && high - low < 0.004) }' falls/energy.csv || fail "the balance between steps is open"
+
 # A winch pulls in the rope at its first node, over two fixed posts that turn it by 90 deg each, against a
 # spring: the tension that arrives is e^(-mu pi) of that at the winch while it pulls, and the inverse as it
 # pays out far enough.

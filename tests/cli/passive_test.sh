@@ -41,6 +41,9 @@ for band in 50mm/s 1m/s; do
   tells 5 "creep within their stick bands" run feet.yaml --set band=$band
   out_has "NOT kept"
 done
+sed 's/of: d}/of: d, measure: {quantities: {far: {of: a.x, take: max}}}}/' feet.yaml >far.yaml
+expect 5 run far.yaml --set band=1m/s --json
+holds '.accuracy.expected == null and .measured.far.expected == null' # nothing is known of quantities either
 
 # ---- what turns about once in a step, or more often; right where the step follows it ----
 turning() { # NAME LINES [METHODS]: of the scene of $body and LINES, which turns at HERTZ, with a step of 1 ms

@@ -24,10 +24,7 @@ STRUT_INLINE void measure_on_line(const strut_contact_table *contacts, int32_t i
   touch->slip = strut_contact_slip(contacts, i, v);
 }
 
-/*
- * The frames of the contacts at an end, where these are of surfaces; NULL of a single straight ground, as a
- * copy without STRUT_TERM_SURFACES knows beforehand.
- */
+/* The frames of contacts with surfaces at an end; NULL of a single straight ground, and without STRUT_TERM_SURFACES. */
 STRUT_INLINE strut_contact_frame *frames_of(const strut_step_end *end, unsigned terms) {
   return terms & STRUT_TERM_SURFACES ? end->frame : NULL;
 }

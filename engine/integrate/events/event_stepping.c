@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * The steps of methods with events, from grid point to grid point: advance_piece predicts, takes, locates, accepts, and
- * switches modes. See docs/dev/architecture.md.
- */
+/* Methods with events step from grid point to grid point: docs/dev/architecture.md, "From stick to slip". */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -242,10 +239,7 @@ static void release_kink(const strut_model *model, strut_state *state, strut_eve
   if (!state->forced.count++) state->forced.first = piece->t;
 }
 
-/*
- * Predicts positions, where the method knows them before it knows forces. A touchdown or an opening on the way ends
- * the piece.
- */
+/* Predicts positions, where the method knows them before forces. A touchdown or opening on the way ends the piece. */
 static void predict_piece(const strut_model *model, const strut_state *state,
                           strut_event_stepper *stepper, step_piece *piece) {
   const strut_step_formula *formula = stepper->formula;
@@ -282,10 +276,7 @@ static void take_part(const strut_model *model, const strut_state *state,
   formula->trial(model, state, stepper, piece->t, piece->h);
 }
 
-/*
- * Where the end contradicts a mode, goes back to where that begins. False: the step up to there shows something else
- * before it; control.h says what to try.
- */
+/* Where the end contradicts a mode, goes back to where that begins. False: something else shows before it. */
 static bool locate_end(const strut_model *model, const strut_state *state,
                        strut_event_stepper *stepper, step_piece *piece) {
   strut_event first = strut_event_first(model, state, stepper, piece->h);

@@ -162,10 +162,7 @@ typedef struct strut_event_view {
 
 enum { STRUT_MOST_STAGES = 13 };
 
-/**
- * An explicit Runge-Kutta method, for what follows its steps. After a trial stepper->stage[k] holds the velocities of
- * stage k > 0.
- */
+/** An explicit Runge-Kutta method. After a trial stepper->stage[k] holds the velocities of stage k > 0. */
 typedef struct strut_tableau {
   int stages; /* the step's end is one more, and the first stage of the next step */
   int order;

@@ -7,10 +7,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 
-/*
- * The classical Runge-Kutta method between events: each step within one smooth set of modes, so
- * that the fourth order holds through contact, friction and slack cables.
- */
+/* The classical Runge-Kutta method between events: steps within smooth modes keep the fourth order. */
 
 /* Positions, then velocities and accelerations of the stages 2 to 4. */
 enum { Q, V, A = V + 3, STAGES = A + 3 };

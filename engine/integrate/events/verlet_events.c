@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Velocity Verlet between events, with the ground's dampers implicit: one evaluation a step, no
- * limit from the dampers, and shorter steps for a while after a touchdown.
- */
+/* Velocity Verlet between events: one evaluation a step, implicit ground dampers, shorter steps after a touchdown. */
 #include "engine/integrate/events/contacts/contact_coupling.h"
 
 #include "engine/integrate/events/contacts/implicit_ground.h"

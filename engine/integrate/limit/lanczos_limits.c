@@ -236,10 +236,7 @@ static double stirred(uint64_t i) {
   return (double)((z ^ (z >> 27)) >> 11) * 0x1p-53 - 0.5;
 }
 
-/*
- * The next v and u from the residual: divided by its size in the mass, which is returned. 0: the
- * motions seen so far are all there are.
- */
+/* The next v and u from the residual over its size in the mass, which is returned; 0: no more motions. */
 static double next_vector(lanczos *self) {
   int32_t n = self->space->tangent->n;
   double square = 0.0;

@@ -8,10 +8,7 @@
 /** Largest h with |R(h lambda)| <= 1 for RK4's R and lambda = re + i im, re <= 0; INFINITY at 0. */
 STRUT_API double strut_rk4_limit(double re, double im);
 
-/**
- * Velocity Verlet with velocity-dependent forces at the predicted velocity v + h a. k [1/s^2], d [1/s].
- * 2/omega without damping.
- */
+/** Velocity Verlet with forces at the predicted velocity v + h a; k [1/s^2], d [1/s]. 2/omega without damping. */
 STRUT_API double strut_verlet_limit(double k, double d);
 
 /** Semi-implicit Euler: (sqrt(d^2 + 4 k) - d) / k. */

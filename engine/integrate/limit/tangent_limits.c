@@ -206,10 +206,7 @@ static double quotient(const double *small, size_t row, const double *vector, si
   return sum;
 }
 
-/*
- * The step at which c h D + h^2/4 K first has the eigenvalue 1, from above: each motion's quotients
- * give a step at which it has it itself.
- */
+/* The step at which c h D + h^2/4 K first has the eigenvalue 1, from above, by the quotients of each motion. */
 static double tangent_limits_flip(symmetric *self, const strut_krylov_basis *space, double c,
                                   double h, double *vector) {
   size_t row = (size_t)space->most;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Limits of the step from the tangent: the Krylov basis, the bound from entries, the limits themselves.
- */
+/** Limits of the step from the tangent: the Krylov basis, the bound from entries, the limits themselves. */
 #pragma once
 
 #include <stdbool.h>

@@ -17,10 +17,7 @@ static const double STEP_OF_TURN = 0.1;
 /* Velocities below this part of size over time are not measured relative to themselves. */
 static const double STANDSTILL = 1e-3;
 
-/*
- * A fine run with fixed steps has four steps for each step of the coarse method, of four
- * evaluations each. The budget counts in such runs.
- */
+/* The budget counts in fine runs: four steps for each step of the coarse method, of four evaluations each. */
 static const double FINE_STEPS = 4.0, FINE_EVALUATIONS = 4.0;
 /* Work that is always allowed, in evaluations times nodes and members [1]. */
 static const double LEAST_WORK = 4e7;
@@ -133,7 +130,8 @@ bool strut_accuracy_orbit_covers_window(const strut_accuracy *accuracy,
 /* The answer is not certified, whatever finer runs say, which agree on its fault. */
 static void withhold(strut_summary *summary) {
   summary->accuracy.kept = false, summary->accuracy.expected = (double)NAN;
-  for (size_t m = 0; m < summary->measured_count; m++) summary->measured[m].kept = false;
+  for (size_t m = 0; m < summary->measured_count; m++)
+    summary->measured[m].kept = false, summary->measured[m].expected = (double)NAN;
 }
 
 /* Bands that are too wide, and friction that gave more of the exchanged energy than the wanted accuracy. */
@@ -204,6 +202,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (!status && !done) status = strut_accuracy_climb_ladder(&a);
   summary->spent.wall_time = strut_run_clock() - begin;
   summary->status = status;
+  if (summary->spent.forced) withhold(summary); /* as the strategy explains */
   refuse_transient(&a);
   refuse_open_balance(&a);
   summary->settle_time = start.how.time, summary->settle = start.how;

@@ -58,10 +58,7 @@ typedef struct strut_accuracy {
   bool stiff; /* the coarse method's step is bounded by stability, not by the period or the run */
 } strut_accuracy;
 
-/**
- * Is a wanted error kept? Only where the expected one is an estimate that can be trusted
- * (`confirmed`) and within it, in the same unit.
- */
+/** Is a wanted error kept? Only where the estimate of the error, in the same unit, can be trusted (`confirmed`). */
 static inline bool strut_accuracy_is_kept(bool confirmed, double expected, double wanted) {
   return confirmed && expected <= wanted;
 }
@@ -77,9 +74,7 @@ void strut_accuracy_begin_phase(const strut_accuracy *accuracy, const char *name
 double strut_accuracy_least_budget(const strut_accuracy *accuracy);
 /** Force evaluations left for the next run, at least 1. */
 int64_t strut_accuracy_evaluations_left(const strut_accuracy *accuracy);
-/**
- * The answer of the request is a run that was a check until now; where it is recorded it is made again.
- */
+/** The answer of the request is a run that was a check until now; where it is recorded it is made again. */
 strut_status strut_accuracy_deliver(strut_accuracy *accuracy, const strut_experiment *experiment,
                                     strut_summary *run);
 /** Runs the model with another experiment; STRUT_WORK_LIMIT if it exceeds the evaluations left. */
@@ -180,16 +175,10 @@ static inline double strut_ladder_velocity_size(const strut_ladder *ladder, doub
   return fmax(fabs(velocity), ladder->a->scale);
 }
 
-/**
- * Error allowed for quantity i, in its unit. Relative ones refer to its value, or to a thousandth
- * of its largest term if that is larger.
- */
+/** Error allowed for quantity i, in its unit, relative to its value or a thousandth of its largest term. */
 double strut_ladder_tolerated_error(const strut_ladder *ladder, const strut_measured *measured,
                                     size_t i);
-/**
- * Error of the extreme that decides an arrival, by two runs, over its distance from the target: 0 is certain, above
- * STRUT_LADDER_UNDECIDED nothing is known.
- */
+/** Error of the extreme that decides an arrival, over its distance from the target, by two runs. 0 is certain. */
 double strut_ladder_arrival_doubt(const strut_measured *one, const strut_measured *other);
 /** Decides whether the latest of two or more runs is accurate enough, and estimates its error. */
 void strut_ladder_judge(strut_ladder *ladder);

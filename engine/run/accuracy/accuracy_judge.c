@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * How accurate the latest of several runs is: two must agree, not only in the velocity, which may agree by chance, but
- * as motions. And what is said of it.
- */
+/* How accurate the latest of several runs is, and what is said of it: two must agree as motions, not by chance. */
 #include <stdio.h>
 
 #include "engine/integrate/integrator.h"
@@ -63,7 +60,7 @@ static const double OF_DISTANCE = 0.5;
 /* Nor, over what is allowed of it, than this part of what is reported of the quantity that is known worst. */
 static const double OF_WORST = 0.1;
 /* Nor, where no convergence shows, than this part of what is wanted: errors may cancel. */
-static const double OF_WANTED = 0.1;
+static const double OF_WANTED = 0.2;
 /* Nor, where a motion repeats itself, a single run with error control, whose tolerance may add as much in each period. */
 static const double OF_FIRST_RUN = 0.5;
 /* Runs by the coarse method; and what those after the second may cost, over the first: as a run with error control. */
@@ -104,6 +101,13 @@ static bool shrinks(const strut_ladder *ladder, const strut_evidence *evidence) 
   return ladder->change < part * ladder->earlier_change && !stalled;
 }
 
+/* Without convergence results may agree by chance, all but those that agree to rounding. */
+static double least_by_chance(const strut_ladder *ladder, const strut_evidence *evidence) {
+  bool converges = evidence->method != CONTROLLED || evidence->shrinks > 0.0;
+  return converges || ladder->change <= NOISE ? 0.0
+                                              : OF_WANTED * ladder->a->target / evidence->margin;
+}
+
 /* Relative error of the latest run: the rest of a geometric series where the rate is known, else the difference. */
 static double estimate_error(const strut_ladder *ladder, const strut_evidence *evidence) {
   if (!(ladder->distance <= evidence->apart) || !shrinks(ladder, evidence)) return HUGE_VAL;
@@ -112,8 +116,7 @@ static double estimate_error(const strut_ladder *ladder, const strut_evidence *e
                      : 0.5;
   double rest =
       ladder->change > NOISE ? ladder->change * fmax(1.0, ratio / (1.0 - ratio)) : ladder->change;
-  bool by_chance = evidence->method == CONTROLLED && evidence->shrinks == 0.0 && rest > NOISE;
-  if (by_chance) rest = fmax(rest, OF_WANTED * ladder->a->target / evidence->margin);
+  rest = fmax(rest, least_by_chance(ladder, evidence));
   if (evidence->leaves == 0.0) return rest;
   return fmax(rest, evidence->leaves *
                         fmax(ladder->earlier_change, OF_DISTANCE * ladder->earlier_distance));
@@ -341,7 +344,9 @@ static void report_quantities(const strut_ladder *ladder) {
   strut_summary *summary = ladder->a->summary;
   bool known = isfinite(ladder->expected);
   double factor = ladder->change > 0.0 && known ? ladder->expected / ladder->change : 1.0;
+  const strut_evidence *evidence = find_evidence(ladder);
   double worst = known ? OF_WORST * ladder->expected / ladder->a->target : 0.0;
+  if (known && evidence) worst = fmax(worst, least_by_chance(ladder, evidence) / ladder->a->target);
   double apart = ladder->same_motion ? OF_DISTANCE * ladder->distance : 0.0;
   for (size_t i = 0; i < summary->measured_count; i++) {
     strut_measured *measured = &summary->measured[i];

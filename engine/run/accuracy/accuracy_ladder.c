@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * A wanted accuracy by repetition: ever finer runs until two agree. Method, tolerance and longest step all change
- * between runs, so that agreement is not a shared error.
- */
+/* A wanted accuracy by repetition: ever finer runs, which differ in all settings, until two agree. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -66,10 +63,7 @@ static double divide_evenly(double unit, double step) {
   return unit / ceil(unit / step * (1.0 - 1e-9));
 }
 
-/*
- * Fixed steps between two moments in the k-th of runs of which the first has `first`: about twice as many from run to
- * run, without a common divisor, as above.
- */
+/* Fixed steps between moments in the k-th run: twice as many from run to run, without a common divisor. */
 static double count_steps_of_moment(double first, int k) {
   double count = first;
   for (int i = 0; i < k; i++) count = 2.0 * count + (i % 2 ? -1.0 : 1.0);
@@ -347,10 +341,7 @@ static strut_status shift_start(strut_ladder *ladder, double shift, strut_snapsh
   return STRUT_OK;
 }
 
-/*
- * Repeats the run before the latest from the shifted start. The answer is not accepted where that changes it
- * by more than the wanted error.
- */
+/* Repeats the run before the latest from the shifted start, which may change the answer by the wanted error. */
 static strut_status check_sensitivity(strut_ladder *ladder) {
   strut_accuracy *accuracy = ladder->a;
   strut_run_options quiet = *accuracy->options;

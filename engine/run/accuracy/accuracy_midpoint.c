@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * A wanted accuracy by implicit midpoint, for scenes whose stiff members keep explicit steps far
- * below the motion.
- */
+/* A wanted accuracy by implicit midpoint, where stiff members keep explicit steps far below the motion. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,10 +9,7 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/scene/signal_program.h"
 
-/*
- * Steps of the first run: in the whole run, in a drive period, and in the shortest time of a
- * signal.
- */
+/* Steps of the first run: in the whole run, in a drive period, and in the shortest time of a signal. */
 static const double STEPS_IN_RUN = 100.0, STEPS_IN_PERIOD = 40.0, STEPS_IN_SIGNAL = 20.0;
 /* Estimated force evaluations per step. */
 static const double EVALUATIONS_PER_STEP = 5.0;
@@ -38,10 +32,7 @@ typedef struct fast_motion {
   double fast, slow; /* twice the kinetic energy, summed over steps [J] */
 } fast_motion;
 
-/*
- * Adds three successive velocities: the second difference is fast, the mean without the rigid
- * translation slow.
- */
+/* Adds three successive velocities: the second difference is fast, the mean without the rigid translation slow. */
 static void add_step_energies(fast_motion *self, const double *velocity) {
   double mean[2] = {0.0, 0.0}, fast = 0.0, slow = 0.0, whole = 0.0;
   for (int32_t i = 0; i < 2 * self->model->node_count; i++) {
@@ -72,10 +63,7 @@ static strut_status read_velocity_rows(void *context, const double *rows, size_t
   return STRUT_OK;
 }
 
-/*
- * Does a signal jump? Then errors do not fall with the order of the method, and two runs may agree
- * by chance.
- */
+/* Does a signal jump? Then errors do not fall with the order of the method, and two runs may agree by chance. */
 static bool has_jumping_signal(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->signal_count; i++) {
@@ -128,10 +116,7 @@ double strut_accuracy_signal_time(const strut_accuracy *accuracy, bool stops) {
   return shortest;
 }
 
-/*
- * First step: one that puts the start of the window on the grid if possible, otherwise half-way. 0:
- * the explicit method is at least as good.
- */
+/* First step: the start of the window is on the grid, or half-way. 0: the explicit method is at least as good. */
 static double choose_first_step(const strut_accuracy *accuracy) {
   strut_span span = strut_experiment_span(&accuracy->experiment, accuracy->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;

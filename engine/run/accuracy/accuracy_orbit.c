@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * A wanted accuracy by the periodic orbit: the coarse method comes near it, the reference method
- * corrects it.
- */
+/* A wanted accuracy by the periodic orbit: the coarse method comes near it, the reference method corrects it. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -13,20 +10,14 @@
 static const double COARSE = 0.0099;
 /* Wanted errors below which the reference method itself must become steady. */
 static const double FINE = 0.0019;
-/*
- * Part of the velocity below which errors are not relative: motions without a period that stay below it
- * creep, unless the wanted error is below FINE.
- */
+/* Motions without a period creep below this part of the velocity that errors are relative to. */
 static const double CREEP = 0.2;
 /*
  * Periods that the transient must leave room for before an orbit is worth searching: of a run that
  * ends when it is steady, and of one with a given window, where repeated runs are more reliable.
  */
 static const double LEAST = 20.0, LEAST_OF_RUN = 60.0;
-/*
- * A first correction below this part of the tolerated one needs no second; the same where a run with the
- * finer step confirms it.
- */
+/* A first correction below this part of the tolerated one needs no second; likewise if a finer run confirms it. */
 static const double SMALL = 0.15, SMALL_CONFIRMED = 0.6;
 /* Part of the budget for the orbit; the rest is kept for repeated runs. */
 static const double PART_OF_BUDGET = 0.6;
@@ -35,20 +26,11 @@ static const double WHOLE_RUN = 2.0;
 enum { MOST_CORRECTIONS = 4 };
 /* Steps tried for the coarse method where the structure becomes stiffer. */
 enum { MOST_STEPS = 3 };
-/*
- * Periods in which a motion normally becomes steady, and those of a second chance before it is
- * called irregular.
- */
+/* Periods in which a motion normally becomes steady, and those of a second chance before it is called irregular. */
 static const double FIRST = 150.0, CHANCE = 12.0;
-/*
- * Accept an irregular motion's mean if its confidence interval is within MEAN times the wanted
- * error; report the interval. Smaller steps would not narrow it.
- */
+/* An irregular motion's mean may have an interval of so many wanted errors, which smaller steps do not narrow. */
 static const double MEAN = 20.0;
-/*
- * Periods in which the reference method should be steady after a failed correction, and where only
- * its own steady motion counts.
- */
+/* Periods for the reference method to become steady: after a failed correction; where only that counts. */
 static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
 /*
  * A start is fast that changes the shape within a period by so many times its range there once it is steady: of those
@@ -62,15 +44,9 @@ enum { MOST_STARTS = 6 };
 static const double FINER_START = 0.2;
 /* Steps of the finer coarse method in one of the first coarse method. */
 static const double FINER = 4.0;
-/*
- * Cycles of extrapolation towards a fixed point of either method; of a finer step where the motion may only
- * creep.
- */
+/* Cycles of extrapolation towards a fixed point of either method; of a finer step where the motion may only creep. */
 enum { MOST_CYCLES = 8, FINER_CYCLES = 3, CREEPING_CYCLES = 2 };
-/*
- * Where the answer hardly depends on extrapolation, a cycle follows only one in which the differences of
- * periods fell to this part.
- */
+/* Where the answer hardly depends on extrapolation, differences must fall to this part in a cycle before the next. */
 static const double FALL = 0.7;
 /*
  * A run of the orbit with the finer step confirms it to this part of the wanted error; that of the reference
@@ -95,10 +71,7 @@ static double coarse_tolerance(const strut_accuracy *accuracy) {
   return fmax(0.1, 16.0 * accuracy->target);
 }
 
-/*
- * The step is chosen for the start; where the structure becomes so stiff that the step is too large, the run is
- * repeated with a step for the stiffest shape so far.
- */
+/* The step is for the start; where the structure becomes stiffer, the run is repeated with a step for that. */
 static void run_coarse_from_start(strut_orbit_solve *solve, double periods) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *run = &solve->coarse_run;
@@ -124,10 +97,7 @@ static void take_end_as_fixed_point(strut_orbit_solve *solve) {
   solve->travel = solve->coarse_run.velocity * solve->coarse_map.period * solve->coarse_map.repeats;
 }
 
-/*
- * Longer steps than stability allows would be refused one by one, and what grows until then would open and close
- * contacts.
- */
+/* Steps longer than stability allows would be refused one by one, and open and close contacts until then. */
 static double longest_reference_step(const strut_orbit_solve *solve) {
   const strut_accuracy *accuracy = solve->a;
   double longest = strut_experiment_span(&accuracy->experiment, accuracy->scene).period / 50.0;
@@ -240,10 +210,7 @@ static bool run_coarse(strut_orbit_solve *solve) {
   return steady;
 }
 
-/*
- * Corrects until the next correction is expected to be small enough. Each defect should be much
- * smaller than the one before, and the velocity follows it in proportion.
- */
+/* Corrects until the next correction should be small enough; each defect must be much smaller than that before. */
 static void correct_orbit(strut_orbit_solve *solve, double enough, int least) {
   double little = (uses_finer_steps(solve->a) ? SMALL_CONFIRMED : SMALL) * enough;
   double defect = HUGE_VAL;
@@ -422,10 +389,7 @@ static void correct_or_rerun(strut_orbit_solve *solve) {
     strut_orbit_solve_average_disputed(solve);
 }
 
-/*
- * The coarse run found no period. Averages an irregular motion, or corrects an orbit that appears
- * after all; otherwise the reference method runs on.
- */
+/* The coarse run found no period: averages, corrects an orbit that appears after all, or runs on by the reference. */
 static void find_without_fixed_point(strut_orbit_solve *solve) {
   const strut_steady_summary *found = &solve->coarse_run.steady;
   bool periodic = strut_orbit_solve_average_irregular(solve);
@@ -482,10 +446,7 @@ static void find_orbit(strut_orbit_solve *solve, bool steady) {
     find_without_fixed_point(solve);
 }
 
-/*
- * Does the last run represent the window of the scene? It must have become steady before the window
- * begins, counted from the start of the scene.
- */
+/* Has the last run become steady before the window of the scene begins, counted from its start? */
 static bool window_is_steady(const strut_orbit_solve *solve) {
   const strut_accuracy *accuracy = solve->a;
   strut_steady_summary steady = solve->last_run.steady;
@@ -553,10 +514,7 @@ static bool confirm_by(strut_orbit_solve *solve, strut_experiment e, double part
   return true;
 }
 
-/*
- * Where a finer step of the coarse method does not confirm a corrected orbit, it is corrected once more, and the
- * reference method has the word.
- */
+/* A corrected orbit that a finer step does not confirm is corrected again; then the reference method decides. */
 static bool confirm_by_finer(strut_orbit_solve *solve, strut_summary *orbit) {
   bool corrected = solve->answer == STRUT_ORBIT_CORRECTED;
   if (!uses_finer_steps(solve->a)) return false;

@@ -124,6 +124,8 @@ bool strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status)
 
 /* Corrections of orbits to which a transient returns slowly were too small by up to a fifth of the estimate. */
 static const double SLOW_RETURN = 1.3;
+/* Of the square of the relative change by corrections, what they may leave. */
+static const double SECOND_ORDER = 0.05;
 
 double strut_orbit_solve_error_share(const strut_orbit_solve *solve, strut_orbit_answer answer) {
   double velocity =
@@ -132,10 +134,11 @@ double strut_orbit_solve_error_share(const strut_orbit_solve *solve, strut_orbit
   if (answer >= STRUT_ORBIT_IRREGULAR) return solve->error / wanted;
   double share = fmax(solve->error, solve->apart) / wanted +
                  solve->reference.tolerance / STRUT_TOLERANCE_PER_ERROR / 3.0 / solve->a->target;
-  /* a first correction is not known better than the fixed point it starts from was sought */
-  if (answer == STRUT_ORBIT_CORRECTED) share += STRUT_FIXED_POINT_PART;
-  if (answer == STRUT_ORBIT_COARSE)
-    share += fabs(solve->orbit.velocity - solve->coarse_run.velocity) / wanted;
+  double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity) / wanted;
+  /* a correction is not known better than the fixed point it starts from was sought, nor than its second order */
+  if (answer == STRUT_ORBIT_CORRECTED)
+    share += STRUT_FIXED_POINT_PART + SECOND_ORDER * moved * moved * solve->a->target;
+  if (answer == STRUT_ORBIT_COARSE) share += moved;
   return SLOW_RETURN * share;
 }
 
@@ -201,10 +204,7 @@ static void repeat_with_finer_tolerance(strut_orbit_solve *solve) {
   }
 }
 
-/*
- * Corrects the orbit once by a period with a tenth of the tolerance; where that changes it too
- * much, runs on with that tolerance.
- */
+/* Corrects the orbit by a period with a tenth of the tolerance; where that changes it too much, runs on with that. */
 static void correct_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   strut_period_map *coarse = &solve->coarse_map, map = {.model = NULL};
@@ -244,6 +244,8 @@ void strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
 
 /* Periods in which a run with half the step must prove to creep, too. */
 static const double CREEPING = 30.0;
+/* A slow creep may end, double or turn round later: by at most this part of the scale, if it is no faster. */
+static const double CREEP_CHANGES = 0.02;
 
 strut_experiment strut_orbit_solve_halve_step(const strut_orbit_solve *solve) {
   strut_experiment half = solve->a->coarse;
@@ -296,10 +298,11 @@ void strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
   bool steady = found.kind == STRUT_MOTION_CREEPING || found.kind == STRUT_MOTION_PERIODIC;
   run->steady.kind = STRUT_MOTION_CREEPING;
   run->steady.repeats = 0;
+  double changes = fmin(2.0 * fabs(run->velocity), CREEP_CHANGES * accuracy->scale);
   if (steady && fabs(run->velocity) <= finer.steady.creep)
     strut_orbit_solve_accept_last_run(
         solve, STRUT_ORBIT_CREEPING,
-        apart + fmax(found.interval, solve->coarse_run.steady.interval));
+        apart + changes + fmax(found.interval, solve->coarse_run.steady.interval));
 }
 
 /* The summary of a periodic orbit to a wanted accuracy: what it cost, how it was found, its error. */
@@ -352,10 +355,7 @@ static int64_t sum_evaluations(const strut_orbit_solve *solve) {
          solve->last_run.spent.evaluations;
 }
 
-/*
- * Makes the summary that of the whole motion from t = 0: up to the orbit, then along it, as `orbit` is, whose
- * works and losses are over all of it already.
- */
+/* Makes the summary that of the whole motion from t = 0: up to the orbit, then along it. */
 static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summary *orbit,
                               strut_summary *summary) {
   const strut_snapshot *from = solve->a->options->from;

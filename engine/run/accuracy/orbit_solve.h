@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Finding the periodic orbit for a wanted accuracy: state and steps shared by accuracy_orbit.c and
- * orbit_solve.c.
- */
+/** Finding the periodic orbit for a wanted accuracy: state and steps shared by accuracy_orbit.c and orbit_solve.c. */
 #pragma once
 
 #include "engine/run/accuracy/accuracy.h"
@@ -92,10 +89,7 @@ void strut_orbit_place_copy(const strut_orbit_solve *solve, const strut_orbit_pl
 /** The place as the start or the end of a run. */
 strut_snapshot strut_orbit_place_snapshot(const strut_orbit_solve *solve,
                                           const strut_orbit_place *place);
-/**
- * Turns the status of map evaluations into that of the search: out of memory, over budget, or interrupted. False: it
- * is over.
- */
+/** Turns the status of map evaluations into that of the search. False: it is over. */
 bool strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status);
 /** A state (both) in the arena; NULL: out of memory, which the status says. */
 double *strut_orbit_solve_array(strut_orbit_solve *solve);
@@ -121,10 +115,7 @@ void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_ans
 
 /* orbit_means.c: motions that do not repeat themselves. */
 
-/**
- * Runs the coarse method on until its motion is periodic or not. True: it became so after all, and
- * solve->end is on its orbit. An irregular motion is averaged.
- */
+/** Runs the coarse method on until periodic (true: solve->end is on the orbit) or not: then it is averaged. */
 bool strut_orbit_solve_average_irregular(strut_orbit_solve *solve);
 /**
  * The reference method (solve->last_run) did not become periodic, the coarse one did: the mean velocity by the

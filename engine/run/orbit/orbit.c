@@ -57,10 +57,7 @@ static bool is_spent_now(const strut_period_map *map) {
          map->evaluations + map->state->latest->evaluations > map->most_evaluations;
 }
 
-/*
- * Advances in chunks long enough for the checks to cost nothing, and short enough to interrupt
- * promptly.
- */
+/* Advances in chunks long enough for the checks to cost nothing, and short enough to interrupt promptly. */
 static void advance_application(strut_period_map *map) {
   const strut_model *model = map->model;
   strut_state *state = map->state;
@@ -134,15 +131,9 @@ void strut_period_map_free(strut_period_map *map) {
   *map = (strut_period_map){.model = NULL};
 }
 
-/*
- * The sum over a disturbance ends when its effect on the travel falls below this part of its
- * largest.
- */
+/* The sum over a disturbance ends when its effect on the travel falls below this part of its largest. */
 static const double DECAYED = 0.02;
-/*
- * Members of a sequence that are combined; stored; most periods of a disturbance, and those after
- * which it must have decayed.
- */
+/* Members of a sequence that are combined; stored; most periods of a disturbance; those in which it must decay. */
 enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12 };
 /*
  * The limit of a sequence from a few of its members: reduced rank extrapolation (Eddy 1979; Mesina
@@ -152,10 +143,7 @@ enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12 };
 
 /* Larger weights lose more digits than extrapolation gains. */
 static const double MOST_WEIGHT = 100.0;
-/*
- * Differences grow where their multiplier is above GROWN; the square of what its fit leaves of them is at
- * most FITTED.
- */
+/* Differences grow where their multiplier is above GROWN, if a fit leaves no more than FITTED of their square. */
 static const double GROWN = 1.02, FITTED = 0.04;
 
 /* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
@@ -186,10 +174,7 @@ static double multiply(const strut_period_map *map, const double *first, const d
   return product;
 }
 
-/*
- * Fills weight (count) of the differences d (count, each 2 length + 1), 1 <= count <= WINDOW. False
- * where the system is singular or the weights would amplify errors.
- */
+/* Weights of the differences, 1 <= count <= WINDOW. False: the system is singular, or they amplify errors. */
 static bool find_extrapolation_weights(const strut_period_map *map, double *const *changes,
                                        int32_t count, double *weight) {
   double a[WINDOW][WINDOW], sum = 0.0, most = 0.0;
@@ -222,10 +207,7 @@ typedef struct disturbance {
   double travel; /* extrapolated [m]; NAN where there is none */
 } disturbance;
 
-/*
- * Extrapolates the sums after m periods into t->limit and t->travel. Returns the size of the
- * combined disturbance.
- */
+/* Extrapolates the sums after m periods into t->limit and t->travel. Returns the size of the combined disturbance. */
 static double extrapolate_disturbance(const strut_period_map *map, int m, disturbance *self) {
   double *d[WINDOW], c[WINDOW];
   int n = m < WINDOW ? m : WINDOW;

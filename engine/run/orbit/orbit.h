@@ -32,9 +32,7 @@ typedef struct strut_period_map {
   void *watch_context;
 } strut_period_map;
 
-/**
- * Creates the map with method and step of `experiment`; the step is adjusted to divide the period.
- */
+/** Creates the map with method and step of `experiment`; the step is adjusted to divide the period. */
 strut_status strut_period_map_create(const strut_model *model, const strut_experiment *experiment,
                                      int32_t repeats, strut_period_map *map, strut_error *error);
 /**

@@ -15,25 +15,16 @@ static const double STANDSTILL = 1e-3;
 /* Relative residuals below this are rounding. */
 static const double ROUNDING = 1e-11;
 
-/*
- * Repetitions of more than one period are accepted only after these, since oscillating transients
- * resemble them.
- */
+/* Repetitions of several periods are accepted only after these: oscillating transients resemble them. */
 enum { LEAST_PERIODS = 24 };
 /* Batches of an irregular motion's mean; fewest periods of an irregular motion. */
 enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
 static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
-/*
- * Periods over which a motion must creep, in batches of three; factor of its changes over half of them that
- * is the beginning of another motion, or the end of a transient.
- */
+/* Periods over which a motion must creep; changes over half of them by this factor begin or end a motion. */
 enum { CREEP_PERIODS = 3 * BATCHES };
 static const double CREEP_CHANGE = 1.5;
-/*
- * Part of the velocity below which motions creep. One that slow repeats itself after several periods only
- * where its velocities differ by less than this part.
- */
+/* Part of the velocity below which motions creep; repetitions of several periods must agree to the other. */
 static const double CREEP_DIFFERENCE = 0.025;
 
 /* Equal growth factors in a row that prove growth. */
@@ -125,10 +116,7 @@ void strut_steady_detector_half_period(const strut_state *state, strut_steady_de
   copy_state(state, detector, detector->latest.middle);
 }
 
-/*
- * The rest of a decay: the geometric series that continues the latest change. The rate follows from
- * whole repetitions, since changes differ between the periods of one.
- */
+/* The rest of a decay: the geometric series of the latest change, at a rate by whole repetitions. */
 static double remaining_decay(const double *residual, int64_t now, int32_t n, int32_t over,
                               double amplitude) {
   int32_t rounds = (over + n - 1) / n;
@@ -139,10 +127,7 @@ static double remaining_decay(const double *residual, int64_t now, int32_t n, in
   return rate < 0.9999 ? rate / (1.0 - rate) : HUGE_VAL;
 }
 
-/*
- * Change from b to a of coordinate i without the mean travel `along`, in sizes, and of its velocity
- * in sizes times 2 pi f.
- */
+/* Change of coordinate i without the mean travel `along`, in sizes, and of its velocity in sizes times 2 pi f. */
 static double scaled_change(const strut_steady_detector *detector, const double *first,
                             const double *second, double along, int32_t i, double *speed) {
   int32_t length = detector->model->length;
@@ -185,10 +170,7 @@ static double distance_to_limit(const strut_steady_detector *detector, int64_t n
   return most / fabs(1.0 - p - q);
 }
 
-/*
- * Does a coordinate of the seemingly steady motion grow? Its changes then increase by a constant
- * factor each time; mere variation has none.
- */
+/* Does a coordinate of the seemingly steady motion grow, by a constant factor each time? */
 static bool something_grows(const strut_steady_detector *detector, int64_t now, int32_t n) {
   const double *at[GROWTH_FACTORS + 2];
   double along[GROWTH_FACTORS + 1];
@@ -216,10 +198,7 @@ static double mean_velocity(const strut_steady_detector *detector, int64_t now, 
   return dx / (periods * detector->period);
 }
 
-/*
- * Do neighbouring periods still approach each other? A transient may seem to repeat itself after n
- * of them.
- */
+/* Do neighbouring periods still approach each other? A transient may seem to repeat itself after n of them. */
 static bool still_decays(const strut_steady_detector *detector, int64_t now, int32_t n) {
   int32_t over = 2 * n > detector->rules.successive ? 2 * n : detector->rules.successive;
   if (now <= over + n) return true;
@@ -306,9 +285,7 @@ static bool creeps(strut_steady_detector *detector, int64_t now) {
   return true;
 }
 
-/*
- * Stores the position at equal intervals over the whole run, which double when the marks are full.
- */
+/* Stores the position at equal intervals over the whole run, which double when the marks are full. */
 static void add_mark(strut_steady_detector *detector, int64_t now, double x) {
   detector->drift.wander += now > 0 ? detector->latest.residual[0][now % STRUT_RING] : 0.0;
   if (now % detector->drift.stride != 0) return;
@@ -324,10 +301,7 @@ static void add_mark(strut_steady_detector *detector, int64_t now, double x) {
   detector->drift.wandered[detector->drift.marks++] = detector->drift.wander;
 }
 
-/*
- * Mean velocity over the latest 8 batches of `each` intervals, its confidence interval by Student's
- * t, and the t value of its trend.
- */
+/* Mean velocity over the latest 8 batches of `each` intervals, its interval by Student's t, t value of its trend. */
 static double batch_mean(const strut_steady_detector *detector, int32_t each, double *interval,
                          double *trend) {
   double speed[BATCHES], mean = 0.0, square = 0.0, slope = 0.0;
@@ -347,10 +321,7 @@ static double batch_mean(const strut_steady_detector *detector, int32_t each, do
   return mean;
 }
 
-/*
- * Is the mean difference of neighbouring periods the same in the latest 8 batches of `each`
- * intervals as in the 8 before, to 2 % or within the scatter of the batches?
- */
+/* Do neighbouring periods differ as much in the latest 8 batches as in the 8 before, to 2 % or their scatter? */
 static bool wanders_evenly(const strut_steady_detector *detector, int32_t each) {
   double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
   for (int i = 0; i < 2 * BATCHES; i++) {

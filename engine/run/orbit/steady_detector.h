@@ -57,24 +57,15 @@ typedef struct strut_steady_detector {
   strut_arena arena;
 } strut_steady_detector;
 
-/**
- * Creates a detector for a run from `begin` [s] with periods of `period` [s]. STRUT_OK or
- * STRUT_NO_MEMORY.
- */
+/** Creates a detector for a run from `begin` [s] with periods of `period` [s]. STRUT_OK or STRUT_NO_MEMORY. */
 strut_status strut_steady_detector_create(const strut_model *model, const strut_steady *wanted,
                                           double period, double begin,
                                           strut_steady_detector *detector);
 /** Samples the shape once within each period, for its range. */
 void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *detector);
-/**
- * Samples the end of a period, the start included. x: of the measured point. True once the motion
- * is steady.
- */
+/** Samples the end of a period, the start included; x: of the measured point. True: the motion is steady. */
 bool strut_steady_detector_period(const strut_state *state, double x,
                                   strut_steady_detector *detector);
-/**
- * Fills velocity, spread and kind of motion; tests whether a motion that never repeated itself is
- * irregular.
- */
+/** Fills velocity, spread and kind of motion; tests whether a motion that never repeated itself is irregular. */
 void strut_steady_detector_finish(strut_steady_detector *detector, strut_summary *summary);
 void strut_steady_detector_free(strut_steady_detector *detector);

@@ -124,10 +124,7 @@ void strut_refresh_compliances(const strut_model *model, const strut_state *stat
     refresh_compliance(model, state, stepper, stepper->active.closed[k]);
 }
 
-/*
- * How long a closed contact remembers a touchdown: the slower root of m s^2 + k s + c, or, where
- * nothing damps it, three of its periods.
- */
+/* How long a closed contact remembers a touchdown: the slower root of m s^2 + k s + c; undamped, three periods. */
 static double settling_time(const strut_contact_entry *contact, double inverse_mass) {
   double rate = 0.5 * contact->damping * inverse_mass, square = contact->stiffness * inverse_mass;
   if (!(square > 0.0)) return 0.0;

@@ -135,10 +135,7 @@ void strut_surface_move(const strut_model *model, const strut_state *state, stru
   if (end->motion) strut_grounds_move(model, t + state->time_offset, end->motion);
 }
 
-/*
- * A gap that is wider than this at the end of a step is positive at both ends, and so is the cubic between
- * them.
- */
+/* A gap that is wider than this at the end of a step is positive at both ends, and so is the cubic between them. */
 static double dip_margin(const strut_contact_table *contacts, const strut_event_stepper *stepper,
                          int32_t i, double h) {
   assert(i >= 0 && i < contacts->count);

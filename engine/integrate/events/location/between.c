@@ -302,10 +302,7 @@ static double faint_strain(const strut_model *model, strut_strain_kind strain, d
   return strain == STRUT_STRAIN_AREA ? length * model->size : length;
 }
 
-/*
- * Is the law too far from leaving its mode, for nodes of which none goes further than `way`? Natural strains then change
- * as the stretch does, and as the nodes let it.
- */
+/* Is the law too far from leaving its mode, for nodes of which none goes further than `way`? */
 static bool is_far(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
                    double h, double way) {
   int32_t element = stepper->laws.item[k].element;

@@ -111,10 +111,7 @@ static void decide_at_edge(const strut_model *model, const strut_state *state,
   modes->of[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
 }
 
-/*
- * Contact i by what pushes it along the ground. Without a normal force yet, other forces may begin just now:
- * those a step later say.
- */
+/* Contact i by what pushes it along the ground; without a normal force yet, by forces a step later. */
 static const strut_touch *pushed_touch(const strut_event_stepper *stepper, int32_t i) {
   return stepper->now->touch[i].normal > 0.0 ? &stepper->now->touch[i] : &stepper->next->touch[i];
 }

@@ -42,10 +42,7 @@ void strut_variation_begin(const strut_model *model, const strut_state *state,
 /** Along the step from stepper->now at time t over h, whose stages and end the stepper holds. */
 void strut_variation_step(const strut_model *model, strut_state *state,
                           const struct strut_event_stepper *stepper, double t, double h);
-/**
- * At an event at time t, before the modes change. `stepped`: a step has just led here; otherwise it is a
- * consequence of the event before, at the same time.
- */
+/** At an event at time t, before modes change. `stepped`: a step has led here, not an event at that time. */
 void strut_variation_meet(const strut_model *model, const strut_state *state,
                           struct strut_event_stepper *stepper, const struct strut_event *event,
                           double t, double dt, bool stepped);
