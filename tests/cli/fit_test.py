@@ -283,7 +283,7 @@ parameters: {c: 3 N s/m, k: 100 N/m, body: 0.1 kg, pull: 20 mm}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [80 mm + pull, 0], mass: body, fixed: y}}
 members: {s: {kind: spring, nodes: [a, b], stiffness: k, damping: c, rest_length: 80 mm}}
 solver: {integrator: adaptive, tolerance: 1e-9, step: 5 ms}
-run: {duration: 0.5 s}
+run: {duration: 0.5 s, measure: {quantities: {place: {of: b.x}}}}
 """
 
 
@@ -375,7 +375,8 @@ fit:
 
 
 def judged():
-    """Starts that all end far off are no wrong model's; a wrong noise; a motion that is the same a period later."""
+    """Starts that all end far off are no wrong model's; a wrong noise; a motion that is the same a period later, or
+    that another one, in the range, goes through at the same few times."""
     late, begin = times(6, 200), times(0, 60)
     wrong, right, both = "the model does not explain the data", "identified", "c: {from: 0.01, to: 0.5}, k: {from: 20, to: 300}"
     few, noise, delay = "starts that end there: 0 of 3: give more starts", ", noise: 0.1 mm", ", align: {delay: free}"
@@ -389,11 +390,14 @@ def judged():
             ("dry-once", 3, times(0, 200), dry, both, noise, 1, wrong, ("a single start does not show",)),
             ("small", 3, begin, swing, both.replace("0.5", "5"), ", noise: 33 um", 2, wrong, ("times the noise",)),
             ("large", 3, begin, swing, both.replace("0.5", "5"), ", noise: 0.3 mm", 1, right, ()),
+            ("coarse", 3, times(0, 10, 0.2), lambda t: swing(t, 0.02), both.replace("0.5", "0.1"), noise, 8,
+             "not determined by these data", ("between the times of 'd'", "measure it more often")),
+            ("outside", 3, begin, swing, "k: {from: 120, to: 300}", noise, 2, "ends at a bound of its range", ("times the noise",)),
             ("period", 0, times(0.3, 100), lambda t: swing(t - 0.1, 0), "k: {from: 20, to: 300}", noise + delay, 2, right, ())):
         decay(at=at, motion=motion)
         write("swings.yaml", OSCILLATOR.replace("c: 3", f"c: {c}"))
         found, said = all_found[name] = fit(name, f"model: swings.yaml\ndata: {{d: {{file: decay.csv}}}}\nfit:\n  over: {{{over}}}\n"
-                                            f"  match: {{d: {{time: d.t, b.x: d.x{match}}}}}\n  starts: {starts}\n",
+                                            f"  match: {{d: {{time: d.t, place: d.x{match}}}}}\n  starts: {starts}\n",
                                             code=0 if verdict == right else 5)
         if verdict != right:
             refused(found, verdict)
@@ -601,7 +605,8 @@ def refusals():
     write("texts.yaml", read("alike.yaml").decode().replace("{one", "{start: \"low\", one") +
           "configurations: {low: {}, high: {b: [0.2, 0]}}\ninitial: {configuration: start}\n")
     write("set.yaml", "strut: 1\nstudy: x\nmodel: texts.yaml\n" + good[good.index("data:"):].replace(
-        "noise: 0.1 mm}", "noise: 0.1 mm, set: {start: low}}\n    e: {time: d.t, b.x: d.x, noise: 1 mm, set: {start: hihg}}").replace(
+        "noise: 0.1 mm}", "noise: 0.1 mm, set: {start: low}}\n    e: {time: e.t, b.x: e.x, noise: 1 mm, set: {start: hihg}}").replace(
+        "decay.csv}", "decay.csv}, e: {file: decay.csv}").replace(
         "match: {d", "match:\n    d").replace("}}}", "}}"))
     run("sweep", "set.yaml", "-o", "set", "-q", code=2, err="did you mean 'high'?")
     write("long.yaml", "strut: 1\nstudy: long\n" + good.replace("decay.csv}", "decay.csv, units: {t: h}}"))

@@ -490,9 +490,8 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
   strut_fit_result *result = self->result;
   size_t n = layout->parameters;
   double *jacobian = strut_arena_allocate(&one->arena, layout->count * n + 1, sizeof *jacobian);
-  result->residual = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
-  result->predicted = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
-  if (!jacobian || !result->residual || !result->predicted)
+  if (!jacobian || !STRUT_ALLOCATE(&result->arena, STRUT_NEW(result->residual, layout->count),
+                                   STRUT_NEW(result->predicted, layout->count)))
     return strut_no_memory(self->points.error, "");
   strut_least_squares problem = strut_fit_problem(one);
   bool fine =
@@ -500,6 +499,7 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
       strut_fit_spectrum_find(jacobian, layout->count, n, &result->arena, &self->spectrum) &&
       problem.residuals(one, self->best, result->residual);
   if (fine) strut_fit_align_all(one, self->best, result->predicted);
+  if (fine) result->coarse = strut_fit_find_coarse(one, self->best, result->predicted);
   if (one->status) return strut_fail(self->points.error, one->status, "%s", one->error.message);
   return fine ? STRUT_OK
               : strut_fail(self->points.error, STRUT_DIVERGED,
@@ -562,10 +562,10 @@ static bool fill_estimates(fitting *self) {
   strut_fit_result *result = self->result;
   size_t n = layout->parameters, first = layout->aligned_count;
   const double *covariance = self->spectrum.covariance;
-  result->estimates = strut_arena_allocate(&result->arena, n, sizeof *result->estimates);
-  result->correlation = strut_arena_allocate(
-      &result->arena, result->variable_count * result->variable_count, sizeof(double));
-  if (!result->estimates || !result->correlation) return false;
+  if (!STRUT_ALLOCATE(
+          &result->arena, STRUT_NEW(result->estimates, n),
+          STRUT_NEW(result->correlation, result->variable_count * result->variable_count)))
+    return false;
   double half = sqrt(self->rise);
   for (size_t i = 0; i < n; i++) {
     double slope = fabs(strut_fit_slope(layout, i, self->best[i]));

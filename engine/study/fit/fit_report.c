@@ -293,9 +293,8 @@ static strut_fit_verdict first_verdict(const strut_fit_estimate *estimate) {
 }
 
 /* What is not known is not given. */
-static void withdraw(strut_fit_estimate *estimate) {
-  bool none = estimate->verdict == STRUT_FIT_UNEXPLAINED ||
-              estimate->verdict == STRUT_FIT_DISAGREE || !isfinite(estimate->error);
+static void withdraw(strut_fit_estimate *estimate, bool none) {
+  none = none || !isfinite(estimate->error);
   if (none || estimate->open_low) estimate->low = (double)NAN;
   if (none || estimate->open_high) estimate->high = (double)NAN;
 }
@@ -320,10 +319,21 @@ bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *s
   bool far = false;
   result->reason = compare_starts(layout, flaw, result);
   if (*flaw) result->reason = qualify_flaw(flaw, result, &far);
+  bool coarse = !*flaw && result->coarse;
+  if (coarse)
+    result->reason = strut_arena_format(&result->arena,
+                                        "the motion changes much between the times of '%.40s', so "
+                                        "that others would do as well: measure it more often",
+                                        result->coarse->name);
   if (!result->reason) return false;
-  for (size_t i = first; i < layout->parameters && *result->reason; i++)
-    result->estimates[i].verdict = *flaw && !far ? STRUT_FIT_UNEXPLAINED : STRUT_FIT_DISAGREE;
-  for (size_t i = first; i < layout->parameters; i++) withdraw(&result->estimates[i]);
+  strut_fit_verdict verdict = coarse          ? STRUT_FIT_UNDETERMINED
+                              : *flaw && !far ? STRUT_FIT_UNEXPLAINED
+                                              : STRUT_FIT_DISAGREE;
+  for (size_t i = first; i < layout->parameters; i++) {
+    strut_fit_estimate *estimate = &result->estimates[i];
+    if (*result->reason && !(*flaw && estimate->at_bound)) estimate->verdict = verdict;
+    withdraw(estimate, *result->reason);
+  }
   return true;
 }
 
