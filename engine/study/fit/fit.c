@@ -63,7 +63,6 @@ typedef struct fitting {
   const double *best;          /* (parameters) */
   double least;                /* sum there */
   double rise;                 /* of the sum to an end of an interval */
-  bool unexplained;            /* no interval is given */
 } fitting;
 
 /* The match with the k-th free delay. */
@@ -549,8 +548,6 @@ static strut_status find_best(fitting *self, size_t count) {
   }
   result->scale = self->layout->noise_known ? 1.0 : sqrt(variance);
   self->rise = self->layout->noise_known ? of_normal : of_student;
-  self->unexplained =
-      self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
   strut_status status = find_spectrum(self, &one);
   strut_fit_case_free(&one);
   return status;
@@ -620,10 +617,11 @@ static strut_status run_stages(fitting *self) {
     if (!status) status = find_best(self, all + beside);
     result->settled = result->best == best;
   }
-  if (!status) status = run_stage(self, ends, profiles, result->found && !self->unexplained);
+  bool fine = status || !result->found || strut_fit_find_flaw(self->layout, result);
+  if (!status && fine) status = run_stage(self, ends, profiles, result->found && !*result->reason);
   if (!status) status = run_stage(self, ends + profiles, fit->omission_count, result->found);
-  bool fine = status || !result->found ||
-              (fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result));
+  if (!status && fine && result->found)
+    fine = fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result);
   return fine ? status : strut_no_memory(self->points.error, "");
 }
 

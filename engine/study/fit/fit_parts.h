@@ -148,12 +148,11 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
 
 /* ---- fit_report.c ---- */
 
-/** Is the sum of squares of a right model, in units of the noise, hardly ever so large? */
-bool strut_fit_is_unexplained(double sum, double freedom);
-
 /**
- * Fills what the residuals and the spectrum at the best fit say, and the verdict of each estimate. False: memory is
- * out.
+ * Describes the residuals of the best fit, and gives as the reason why it does not explain the data, or "". A match of its
+ * own has no more degrees of freedom than numbers. False: memory is out.
  */
+bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result);
+/** Fills what starts and spectrum say besides, and the verdict of each estimate. False: memory is out. */
 bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      strut_fit_result *result);
