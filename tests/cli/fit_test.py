@@ -353,6 +353,7 @@ run: {duration: 0.5 s}
 
 def ranges():
     """A ratio of three numbers, and a true value out of its range."""
+    decay()
     write("ratio.yaml", OSCILLATOR)
     study = """model: ratio.yaml
 data: {d: {file: decay.csv}}

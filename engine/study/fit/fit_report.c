@@ -254,10 +254,9 @@ static const char *compare_starts(const strut_fit_layout *layout, const char *fl
   if (better)
     why = "beside the best fit there is a better one, which no start has found: give more starts";
   if (!*why && !(known && result->freedom > 0.0) && result->start_count > 1 && result->agreeing < 2)
-    why = known
-              ? "only one start ends at the best fit, and there are no more numbers than parameters"
-              : "only one start ends at the best fit, and without the noise nothing says that it "
-                "is right";
+    why =
+        "only one start ends at the best fit, and residuals cannot say that it is right: give "
+        "'noise', or more numbers than parameters";
   return why;
 }
 
@@ -319,7 +318,8 @@ bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *s
                                               : STRUT_FIT_DISAGREE;
   for (size_t i = first; i < layout->parameters; i++) {
     strut_fit_estimate *estimate = &result->estimates[i];
-    if (*result->reason && !(*flaw && estimate->at_bound)) estimate->verdict = verdict;
+    bool bound = estimate->at_bound && verdict == STRUT_FIT_UNEXPLAINED;
+    if (*result->reason && !bound) estimate->verdict = verdict;
     bool none = *result->reason || !isfinite(estimate->error); /* is known: nor is it given */
     if (none || estimate->open_low) estimate->low = (double)NAN;
     if (none || estimate->open_high) estimate->high = (double)NAN;
