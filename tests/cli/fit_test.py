@@ -585,6 +585,7 @@ def coverage(count, align=""):
 # ---- what is refused before anything is computed ----
 
 def refusals():
+    decay()
     good = ALIKE
     for old, new, err in (
             ("one: {from", "onee: {from", "the model has no parameter 'onee'; did you mean 'one'?"),
