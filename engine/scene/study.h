@@ -132,7 +132,7 @@ typedef struct strut_fit_alignment {
 typedef struct strut_fit_match {
   const char *name;
   strut_fit_kind kind;
-  uint32_t compute; /* strut_compute, of a TABLE */
+  uint32_t compute; /* strut_compute: RUN of motions, PATH of a CURVE */
   size_t count;     /* numbers of each series */
   const double
       *at; /* (count) times of a MOTION, ascending [s]; displacements of a CURVE [m]; else NULL */

@@ -327,6 +327,7 @@ def alike():
 
 def ranges():
     """A ratio of three numbers, and a true value out of its range."""
+    decay()
     mass_on_spring("ratio", "c: 3 N s/m, k: 100 N/m, body: 0.1 kg", "0.1", "body",
                    "stiffness: k, damping: c, rest_length: 80 mm", HALF_A_SECOND)
     three = study("ratio", "decay", "c: {from: 1 N s/m, to: 9 N s/m}, k: {from: 50 N/m, to: 200 N/m}, "
@@ -346,7 +347,8 @@ def ranges():
 
 
 def judged():
-    """Starts that all end far off are no wrong model's; a wrong noise; a motion that is the same a period later."""
+    """Starts that all end far off are no wrong model's; a wrong noise; a motion that is the same a period later, or
+    that another one, in the range, goes through at the same few times."""
     late, begin = times(6, 200), times(0, 60)
     wrong, right, both = "the model does not explain the data", "identified", "c: {from: 0.01, to: 0.5}, k: {from: 20, to: 300}"
     few, noise, delay = "starts that end there: 0 of 3: give more starts", ", noise: 0.1 mm", ", align: {delay: free}"
@@ -360,11 +362,14 @@ def judged():
             ("dry-once", 3, times(0, 200), dry, both, noise, 1, wrong, ("a single start does not show",)),
             ("small", 3, begin, swing, both.replace("0.5", "5"), ", noise: 33 um", 2, wrong, ("times the noise",)),
             ("large", 3, begin, swing, both.replace("0.5", "5"), ", noise: 0.3 mm", 1, right, ()),
+            ("coarse", 3, times(0, 10, 0.2), lambda t: swing(t, 0.02), both.replace("0.5", "0.1"), noise, 8,
+             "not determined by these data", ("between the times of 'd'", "measure it more often")),
+            ("outside", 3, begin, swing, "k: {from: 120, to: 300}", noise, 2, "ends at a bound of its range", ("times the noise",)),
             ("period", 0, times(0.3, 100), lambda t: swing(t - 0.1, 0), "k: {from: 20, to: 300}", noise + delay, 2, right, ())):
         decay(at=at, motion=motion)
         mass_on_spring("swings", f"c: {c} N s/m, k: 100 N/m", "0.1", "0.1 kg",
-                       "stiffness: k, damping: c, rest_length: 80 mm", HALF_A_SECOND)
-        found, said = all_found[name] = fit(name, study("swings", "decay", over, "b.x: d.x" + match, starts),
+                       "stiffness: k, damping: c, rest_length: 80 mm", HALF_A_SECOND.replace("0.5 s", "0.5 s, measure: {quantities: {place: {of: b.x}}}"))
+        found, said = all_found[name] = fit(name, study("swings", "decay", over, "place: d.x" + match, starts),
                                             code=0 if verdict == right else 5)
         if verdict != right:
             refused(found, verdict)
@@ -502,6 +507,7 @@ def coverage(count, align=""):
 # ---- what is refused before anything is computed ----
 
 def refusals():
+    decay()
     good = ALIKE
     for old, new, err in (
             ("one: {from", "onee: {from", "the model has no parameter 'onee'; did you mean 'one'?"),
@@ -523,7 +529,8 @@ def refusals():
     write("texts.yaml", read("alike.yaml").decode().replace("{one", "{start: \"low\", one") +
           "configurations: {low: {}, high: {b: [0.2, 0]}}\ninitial: {configuration: start}\n")
     write("set.yaml", "strut: 1\nstudy: x\nmodel: texts.yaml\n" + good[good.index("data:"):].replace(
-        "noise: 0.1 mm}", "noise: 0.1 mm, set: {start: low}}\n    e: {time: d.t, b.x: d.x, noise: 1 mm, set: {start: hihg}}").replace(
+        "noise: 0.1 mm}", "noise: 0.1 mm, set: {start: low}}\n    e: {time: e.t, b.x: e.x, noise: 1 mm, set: {start: hihg}}").replace(
+        "decay.csv}", "decay.csv}, e: {file: decay.csv}").replace(
         "match: {d", "match:\n    d").replace("}}}", "}}"))
     run("sweep", "set.yaml", "-o", "set", "-q", code=2, err="did you mean 'high'?")
     write("long.yaml", "strut: 1\nstudy: long\n" + good.replace("decay.csv}", "decay.csv, units: {t: h}}"))

@@ -63,7 +63,6 @@ typedef struct fitting {
   const double *best;          /* (parameters) */
   double least;                /* sum there */
   double rise;                 /* of the sum to an end of an interval */
-  bool unexplained;            /* no interval is given */
 } fitting;
 
 /* The match with the k-th free delay. */
@@ -490,9 +489,8 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
   strut_fit_result *result = self->result;
   size_t n = layout->parameters;
   double *jacobian = strut_arena_allocate(&one->arena, layout->count * n + 1, sizeof *jacobian);
-  result->residual = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
-  result->predicted = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
-  if (!jacobian || !result->residual || !result->predicted)
+  if (!jacobian || !STRUT_ALLOCATE(&result->arena, STRUT_NEW(result->residual, layout->count),
+                                   STRUT_NEW(result->predicted, layout->count)))
     return strut_no_memory(self->points.error, "");
   strut_least_squares problem = strut_fit_problem(one);
   bool fine =
@@ -500,6 +498,7 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
       strut_fit_spectrum_find(jacobian, layout->count, n, &result->arena, &self->spectrum) &&
       problem.residuals(one, self->best, result->residual);
   if (fine) strut_fit_align_all(one, self->best, result->predicted);
+  if (fine) result->coarse = strut_fit_find_coarse(one, self->best, result->predicted);
   if (one->status) return strut_fail(self->points.error, one->status, "%s", one->error.message);
   return fine ? STRUT_OK
               : strut_fail(self->points.error, STRUT_DIVERGED,
@@ -549,8 +548,6 @@ static strut_status find_best(fitting *self, size_t count) {
   }
   result->scale = self->layout->noise_known ? 1.0 : sqrt(variance);
   self->rise = self->layout->noise_known ? of_normal : of_student;
-  self->unexplained =
-      self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
   strut_status status = find_spectrum(self, &one);
   strut_fit_case_free(&one);
   return status;
@@ -562,10 +559,10 @@ static bool fill_estimates(fitting *self) {
   strut_fit_result *result = self->result;
   size_t n = layout->parameters, first = layout->aligned_count;
   const double *covariance = self->spectrum.covariance;
-  result->estimates = strut_arena_allocate(&result->arena, n, sizeof *result->estimates);
-  result->correlation = strut_arena_allocate(
-      &result->arena, result->variable_count * result->variable_count, sizeof(double));
-  if (!result->estimates || !result->correlation) return false;
+  if (!STRUT_ALLOCATE(
+          &result->arena, STRUT_NEW(result->estimates, n),
+          STRUT_NEW(result->correlation, result->variable_count * result->variable_count)))
+    return false;
   double half = sqrt(self->rise);
   for (size_t i = 0; i < n; i++) {
     double slope = fabs(strut_fit_slope(layout, i, self->best[i]));
@@ -620,10 +617,11 @@ static strut_status run_stages(fitting *self) {
     if (!status) status = find_best(self, all + beside);
     result->settled = result->best == best;
   }
-  if (!status) status = run_stage(self, ends, profiles, result->found && !self->unexplained);
+  bool fine = status || !result->found || strut_fit_find_flaw(self->layout, result);
+  if (!status && fine) status = run_stage(self, ends, profiles, result->found && !*result->reason);
   if (!status) status = run_stage(self, ends + profiles, fit->omission_count, result->found);
-  bool fine = status || !result->found ||
-              (fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result));
+  if (!status && fine && result->found)
+    fine = fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result);
   return fine ? status : strut_no_memory(self->points.error, "");
 }
 

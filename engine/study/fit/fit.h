@@ -91,7 +91,8 @@ typedef struct strut_fit_result {
       *predicted; /* (numbers: matches, series, count) at the best, aligned; residuals 0 at gaps */
   size_t used, agreeing;                   /* numbers; starts that agree with the best */
   double chi_square, freedom, probability; /* of a sum so large; NAN: the noise is not known */
-  double scale;       /* by which standard errors of unit noise are multiplied */
+  double scale;                  /* by which standard errors of unit noise are multiplied */
+  const strut_fit_match *coarse; /* its times are too far apart; or NULL */
   const char *reason; /* why the model does not explain the data or starts disagree; or "" */
   const strut_fit_series
       *missing; /* the model has no such number, so that nothing is found; or NULL */

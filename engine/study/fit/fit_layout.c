@@ -42,10 +42,12 @@ static strut_status refuse(strut_fit_layout *layout, size_t m, size_t s, const c
 static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut_setup *setup,
                                  strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  strut_fit_source *sources = layout->parts[m].sources =
-      strut_arena_allocate(&layout->arena, match->series_count, sizeof *sources);
-  strut_column *places = strut_arena_allocate(&layout->arena, match->series_count, sizeof *places);
-  if (!sources || !places) return strut_no_memory(error, "");
+  strut_fit_source *sources;
+  strut_column *places;
+  if (!STRUT_ALLOCATE(&layout->arena, STRUT_NEW(sources, match->series_count),
+                      STRUT_NEW(places, match->series_count)))
+    return strut_no_memory(error, "");
+  layout->parts[m].sources = sources;
   for (size_t s = 0; s < match->series_count; s++) {
     const strut_quantity_definition *quantity =
         strut_fit_quantity(&setup->experiment, match->series[s].of);
@@ -148,8 +150,7 @@ static void keep_all(strut_study *study) {
 static strut_status make_table(strut_fit_layout *layout, size_t m, strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
   layout->parts[m].study = *layout->plan->study;
-  layout->parts[m].study.compute =
-      match->kind == STRUT_FIT_CURVE ? (uint32_t)STRUT_COMPUTE_PATH : match->compute;
+  layout->parts[m].study.compute = match->compute;
   if (match->kind != STRUT_FIT_TABLE) return STRUT_OK;
   keep_all(&layout->parts[m].study);
   return strut_sweep_plan_make(&layout->parts[m].study, &layout->plan->scenes,
@@ -181,21 +182,18 @@ static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
 strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_flag *interrupt,
                                    strut_fit_layout *layout, strut_error *error) {
   const strut_study_fit *fit = plan->study->fit;
-  strut_arena *arena = &layout->arena;
   size_t count = 0;
   *layout =
       (strut_fit_layout){.plan = plan, .fit = fit, .interrupt = interrupt, .noise_known = true};
   for (size_t m = 0; m < fit->match_count; m++)
     count += fit->matches[m].count * fit->matches[m].series_count;
   size_t most = STRUT_FIT_ALIGNS_COUNT * fit->match_count, all = most + fit->variable_count;
-  layout->aligned = strut_arena_allocate(arena, most, sizeof *layout->aligned);
-  layout->parts = strut_arena_allocate(arena, fit->match_count, sizeof *layout->parts);
-  layout->measured = strut_arena_allocate(arena, count, sizeof *layout->measured);
-  layout->low = strut_arena_allocate(arena, all, sizeof *layout->low);
-  layout->high = strut_arena_allocate(arena, all, sizeof *layout->high);
   layout->standing = strut_equilibrium_cache_create();
-  if (!layout->aligned || !layout->parts || !layout->measured || !layout->low || !layout->high ||
-      !layout->standing)
+  if (!layout->standing ||
+      !STRUT_ALLOCATE(&layout->arena, STRUT_NEW(layout->aligned, most),
+                      STRUT_NEW(layout->parts, fit->match_count),
+                      STRUT_NEW(layout->measured, count), STRUT_NEW(layout->low, all),
+                      STRUT_NEW(layout->high, all)))
     return strut_no_memory(error, "");
   strut_status status = find_all(layout, error);
   layout->parameters = layout->aligned_count + fit->variable_count;

@@ -70,6 +70,7 @@ typedef struct strut_fit_layout {
 typedef struct strut_fit_case {
   const strut_fit_layout *layout;
   double share;        /* of the time of motions that counts */
+  double between;      /* motions are predicted so far between each time and the next */
   int32_t left_out;    /* this match does not count; -1: all do */
   double *weight;      /* (count) factors of residuals; 0: a gap, or it does not count */
   size_t used;         /* residuals that count */
@@ -117,6 +118,12 @@ void strut_fit_align_all(const strut_fit_case *one, const double *parameters, do
  */
 double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size_t rank,
                        double *parameters);
+/**
+ * A match whose times are too far apart to show what the motion does between them, so that others would do as well; or
+ * NULL. `at`: its numbers at the parameters, aligned.
+ */
+const strut_fit_match *strut_fit_find_coarse(strut_fit_case *one, const double *parameters,
+                                             const double *at);
 /** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
 
@@ -141,12 +148,11 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
 
 /* ---- fit_report.c ---- */
 
-/** Is the sum of squares of a right model, in units of the noise, hardly ever so large? */
-bool strut_fit_is_unexplained(double sum, double freedom);
-
 /**
- * Fills what the residuals and the spectrum at the best fit say, and the verdict of each estimate. False: memory is
- * out.
+ * Describes the residuals of the best fit, and gives as the reason why it does not explain the data, or "". A match of its
+ * own has no more degrees of freedom than numbers. False: memory is out.
  */
+bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result);
+/** Fills what starts and spectrum say besides, and the verdict of each estimate. False: memory is out. */
 bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      strut_fit_result *result);

@@ -105,20 +105,20 @@ strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *i
                                  strut_fit_plan *plan, strut_error *error) {
   strut_fit_layout layout = {0};
   strut_fit_case one = {0};
-  strut_arena *arena = &layout.arena;
   *plan = (strut_fit_plan){.fit = of->study->fit, .variable_count = of->study->fit->variable_count};
   strut_status status = strut_fit_layout_make(of, interrupt, &layout, error);
   size_t n = layout.parameters, most = 2;
   for (size_t m = 0; m < plan->fit->match_count; m++)
     most += 1 + plan->fit->matches[m].series_count;
-  double *jacobian = strut_arena_allocate(arena, layout.count * n + 1, sizeof *jacobian);
-  double *residual = strut_arena_allocate(arena, layout.count + 1, sizeof *residual);
-  planning self = {.layout = &layout, .plan = plan, .jacobian = jacobian};
-  self.part = strut_arena_allocate(arena, layout.count * n + 1, sizeof(double));
-  plan->candidates = strut_arena_allocate(&plan->arena, most, sizeof *plan->candidates);
-  plan->at = strut_arena_allocate(&plan->arena, n + 1, sizeof *plan->at);
-  bool fine = jacobian && residual && self.part && plan->candidates && plan->at &&
-              (status || strut_fit_case_create(&layout, &one));
+  double *jacobian, *residual;
+  planning self = {.layout = &layout, .plan = plan};
+  bool fine =
+      STRUT_ALLOCATE(&layout.arena, STRUT_NEW(jacobian, layout.count * n + 1),
+                     STRUT_NEW(residual, layout.count + 1),
+                     STRUT_NEW(self.part, layout.count * n + 1)) &&
+      STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->candidates, most), STRUT_NEW(plan->at, n + 1)) &&
+      (status || strut_fit_case_create(&layout, &one));
+  self.jacobian = jacobian;
   if (!status && !fine) status = strut_no_memory(error, "");
   if (!status) {
     strut_least_squares problem = strut_fit_problem(&one);

@@ -43,10 +43,6 @@ static const double PART = 0.02, ERRORS = 2.0;
 /* A power this near to 1 is 1. */
 static const double WHOLE = 0.02;
 
-bool strut_fit_is_unexplained(double sum, double freedom) {
-  return gsl_cdf_chisq_Q(sum, fmax(freedom, 1.0)) < RARE;
-}
-
 /* ---- residuals ---- */
 
 /* Correlation of successive residuals of a series, in its standard errors; NAN: too few. */
@@ -82,31 +78,40 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   of->chi_square = layout->noise_known ? square : (double)NAN;
 }
 
-/*
- * Why the model does not explain the data; "" if it does, or NULL: memory is out. A match of its own has no more
- * degrees of freedom than numbers.
- */
-static const char *find_flaw(strut_fit_result *result) {
+/* Is the sum of squares of a right model, in units of the noise, hardly ever so large? */
+static bool is_unexplained(double sum, double freedom) {
+  return gsl_cdf_chisq_Q(sum, fmax(freedom, 1.0)) < RARE;
+}
+
+bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result) {
+  size_t matches = layout->fit->match_count;
+  bool known = layout->noise_known;
+  double sum = result->starts[result->best].sum;
   const char *flaw = "";
-  bool known = !isnan(result->chi_square);
-  for (size_t m = 0; m <= result->fit->match_count && known && flaw && !*flaw; m++) {
+  result->residuals = strut_arena_allocate(&result->arena, matches, sizeof *result->residuals);
+  if (!result->residuals) return false;
+  for (size_t m = 0; m < matches; m++) describe_residuals(layout, m, result);
+  result->chi_square = known ? sum : (double)NAN;
+  result->probability =
+      known && result->freedom > 0.0 ? gsl_cdf_chisq_Q(sum, result->freedom) : (double)NAN;
+  for (size_t m = 0; m <= matches && known && flaw && !*flaw; m++) {
     const strut_fit_residuals *of = m ? &result->residuals[m - 1] : NULL;
-    double square = of ? of->chi_square : result->chi_square;
-    double freedom = of ? (double)of->used : result->freedom;
-    if (strut_fit_is_unexplained(square, freedom))
+    double square = of ? of->chi_square : sum, freedom = of ? (double)of->used : result->freedom;
+    if (is_unexplained(square, freedom))
       flaw = strut_arena_format(&result->arena,
                                 "the residuals%s%.40s%s are %.3g times the noise: chi square %.4g "
                                 "with %.0f degrees of freedom",
                                 of ? " of '" : "", of ? of->match->name : "", of ? "'" : "",
                                 sqrt(square / freedom), square, freedom);
   }
-  for (size_t m = 0; m < result->fit->match_count && flaw && !*flaw; m++)
+  for (size_t m = 0; m < matches && flaw && !*flaw; m++)
     if (fabs(result->residuals[m].lag) > CORRELATED && result->scale > STRUT_FIT_EXACT)
       flaw = strut_arena_format(&result->arena,
                                 "successive residuals of '%.40s' are correlated, by %.3g standard "
                                 "errors",
                                 result->residuals[m].match->name, result->residuals[m].lag);
-  return flaw;
+  result->reason = flaw;
+  return flaw != NULL;
 }
 
 /* By how much the noise of a match is larger than its residuals, where it is too large for them; else 0. */
@@ -249,10 +254,9 @@ static const char *compare_starts(const strut_fit_layout *layout, const char *fl
   if (better)
     why = "beside the best fit there is a better one, which no start has found: give more starts";
   if (!*why && !(known && result->freedom > 0.0) && result->start_count > 1 && result->agreeing < 2)
-    why = known
-              ? "only one start ends at the best fit, and there are no more numbers than parameters"
-              : "only one start ends at the best fit, and without the noise nothing says that it "
-                "is right";
+    why =
+        "only one start ends at the best fit, and residuals cannot say that it is right: give "
+        "'noise', or more numbers than parameters";
   return why;
 }
 
@@ -292,38 +296,34 @@ static strut_fit_verdict first_verdict(const strut_fit_estimate *estimate) {
                             : STRUT_FIT_IDENTIFIED;
 }
 
-/* What is not known is not given. */
-static void withdraw(strut_fit_estimate *estimate) {
-  bool none = estimate->verdict == STRUT_FIT_UNEXPLAINED ||
-              estimate->verdict == STRUT_FIT_DISAGREE || !isfinite(estimate->error);
-  if (none || estimate->open_low) estimate->low = (double)NAN;
-  if (none || estimate->open_high) estimate->high = (double)NAN;
-}
-
 bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      strut_fit_result *result) {
   size_t first = layout->aligned_count;
-  double sum = result->starts[result->best].sum;
-  result->residuals =
-      strut_arena_allocate(&result->arena, layout->fit->match_count, sizeof *result->residuals);
-  if (!result->residuals) return false;
-  for (size_t m = 0; m < layout->fit->match_count; m++) describe_residuals(layout, m, result);
-  result->chi_square = layout->noise_known ? sum : (double)NAN;
-  result->probability = layout->noise_known && result->freedom > 0.0
-                            ? gsl_cdf_chisq_Q(sum, result->freedom)
-                            : (double)NAN;
+  const char *flaw = result->reason;
+  bool far = false;
   for (size_t i = 0; i < layout->parameters; i++)
     result->estimates[i].verdict = first_verdict(&result->estimates[i]);
   if (!find_directions(layout, spectrum, result)) return false;
-  const char *flaw = find_flaw(result);
-  if (!flaw) return false;
-  bool far = false;
   result->reason = compare_starts(layout, flaw, result);
   if (*flaw) result->reason = qualify_flaw(flaw, result, &far);
+  bool coarse = !*flaw && result->coarse;
+  if (coarse)
+    result->reason = strut_arena_format(&result->arena,
+                                        "the motion changes much between the times of '%.40s', so "
+                                        "that others would do as well: measure it more often",
+                                        result->coarse->name);
   if (!result->reason) return false;
-  for (size_t i = first; i < layout->parameters && *result->reason; i++)
-    result->estimates[i].verdict = *flaw && !far ? STRUT_FIT_UNEXPLAINED : STRUT_FIT_DISAGREE;
-  for (size_t i = first; i < layout->parameters; i++) withdraw(&result->estimates[i]);
+  strut_fit_verdict verdict = coarse          ? STRUT_FIT_UNDETERMINED
+                              : *flaw && !far ? STRUT_FIT_UNEXPLAINED
+                                              : STRUT_FIT_DISAGREE;
+  for (size_t i = first; i < layout->parameters; i++) {
+    strut_fit_estimate *estimate = &result->estimates[i];
+    bool bound = estimate->at_bound && verdict == STRUT_FIT_UNEXPLAINED;
+    if (*result->reason && !bound) estimate->verdict = verdict;
+    bool none = *result->reason || !isfinite(estimate->error); /* is known: nor is it given */
+    if (none || estimate->open_low) estimate->low = (double)NAN;
+    if (none || estimate->open_high) estimate->high = (double)NAN;
+  }
   return true;
 }
 

@@ -15,6 +15,12 @@ static const double TOLERANCE = STRUT_FIT_EXACT;
 /* Steps of differences, and where the method ends, in parts of a parameter's range. */
 static const double STEP = 1e-4, NEAR = 1e-6;
 
+/*
+ * Where a motion is looked at between two times, which no vibration hides from, and which part of the squared steps from
+ * time to time it may be off the line there: one of 2.3 times a period is.
+ */
+static const double BETWEEN = 0.382, COARSE = 0.15;
+
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
 
@@ -122,8 +128,11 @@ static size_t spread_samples(prediction *self, double *time) {
 static size_t place_samples(const prediction *self, double *time) {
   const strut_fit_match *match = self->match;
   size_t count = match->at ? count_early(self->one, match) : 1;
-  for (size_t i = 0; i < count; i++)
-    time[i] = match->at ? fmax(match->at[i] - self->align.number[STRUT_FIT_DELAY], 0.0) : 0.0;
+  for (size_t i = 0; i < count; i++) {
+    double later = match->at && i + 1 < count ? match->at[i + 1] - match->at[i] : 0.0;
+    double at = match->at ? match->at[i] + self->one->between * later : 0.0;
+    time[i] = match->at ? fmax(at - self->align.number[STRUT_FIT_DELAY], 0.0) : 0.0;
+  }
   if (count == 1) time[count++] = time[0];
   time[count - 1] = fmax(time[count - 1], AT_ONCE);
   return count;
@@ -410,6 +419,32 @@ void strut_fit_align_all(const strut_fit_case *one, const double *parameters, do
   }
 }
 
+/* Does a motion leave the lines between its numbers by much of the way from one to the next, and by more than the noise? */
+static bool is_coarse(const strut_fit_match *match, const double *at, const double *between) {
+  double missed = 0.0, steps = 0.0, noise = 0.0;
+  for (size_t s = 0; s < match->series_count; s++) {
+    const double *x = at + match->series[s].first, *y = between + match->series[s].first;
+    for (size_t i = 0; i + 1 < match->count; i++) {
+      missed += pow(x[i] + BETWEEN * (x[i + 1] - x[i]) - y[i], 2.0);
+      steps += pow(x[i + 1] - x[i], 2.0);
+      noise += match->noise * match->noise;
+    }
+  }
+  return match->kind == STRUT_FIT_MOTION && missed > fmax(COARSE * steps, noise);
+}
+
+const strut_fit_match *strut_fit_find_coarse(strut_fit_case *one, const double *parameters,
+                                             const double *at) {
+  const strut_study_fit *fit = one->layout->fit;
+  const strut_fit_match *coarse = NULL;
+  one->between = BETWEEN, one->known = false;
+  if (predict(one, parameters)) strut_fit_align_all(one, parameters, one->buffer);
+  for (size_t m = 0; m < fit->match_count && one->known && !coarse; m++)
+    if (is_coarse(&fit->matches[m], at, one->buffer)) coarse = &fit->matches[m];
+  one->between = 0.0, one->known = false;
+  return coarse;
+}
+
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out) {
   const strut_fit_layout *layout = one->layout;
   double *weight = one->weight;
@@ -477,7 +512,6 @@ strut_least_squares strut_fit_problem(strut_fit_case *one) {
 }
 
 bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) {
-  strut_arena *arena = &one->arena;
   size_t most = layout->count;
   *one = (strut_fit_case){.layout = layout};
   for (size_t m = 0; m < layout->fit->match_count; m++) {
@@ -485,11 +519,9 @@ bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) 
     size_t room = 3 * (count + 1) * (1 + layout->fit->matches[m].series_count);
     if (room > most) most = room;
   }
-  one->buffer = strut_arena_allocate(arena, most, sizeof(double));
-  one->latest = strut_arena_allocate(arena, layout->parameters, sizeof(double));
-  one->weight = strut_arena_allocate(arena, layout->count, sizeof(double));
-  one->predicted = strut_arena_allocate(arena, layout->count, sizeof(double));
-  bool fine = one->buffer && one->latest && one->weight && one->predicted;
+  bool fine = STRUT_ALLOCATE(
+      &one->arena, STRUT_NEW(one->buffer, most), STRUT_NEW(one->latest, layout->parameters),
+      STRUT_NEW(one->weight, layout->count), STRUT_NEW(one->predicted, layout->count));
   if (fine) strut_fit_choose(one, 1.0, -1);
   return fine;
 }

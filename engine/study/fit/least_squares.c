@@ -151,12 +151,9 @@ static int find_jacobian(const gsl_vector *x, void *context, gsl_matrix *jacobia
 
 static bool allocate(solver *self, strut_arena *arena) {
   size_t count = self->problem->count;
-  self->at = strut_arena_allocate(arena, self->problem->parameters, sizeof *self->at);
-  self->ahead = strut_arena_allocate(arena, count, sizeof *self->ahead);
-  self->back = strut_arena_allocate(arena, count, sizeof *self->back);
-  self->known = strut_arena_allocate(arena, count, sizeof *self->known);
-  self->derivative = strut_arena_allocate(arena, count, sizeof *self->derivative);
-  return self->at && self->ahead && self->back && self->known && self->derivative;
+  return STRUT_ALLOCATE(arena, STRUT_NEW(self->at, self->problem->parameters),
+                        STRUT_NEW(self->ahead, count), STRUT_NEW(self->back, count),
+                        STRUT_NEW(self->known, count), STRUT_NEW(self->derivative, count));
 }
 
 static double sum_of_squares(const double *residual, size_t count) {
@@ -300,11 +297,11 @@ bool strut_fit_spectrum_find(double *jacobian, size_t count, size_t parameters, 
                              strut_fit_spectrum *spectrum) {
   size_t n = parameters;
   *spectrum = (strut_fit_spectrum){.parameters = n};
-  spectrum->singular = strut_arena_allocate(arena, n, sizeof(double));
-  spectrum->direction = strut_arena_allocate(arena, n * n, sizeof(double));
-  spectrum->covariance = strut_arena_allocate(arena, n * n, sizeof(double));
-  double *work = strut_arena_allocate(arena, n, sizeof *work);
-  if (!spectrum->singular || !spectrum->direction || !spectrum->covariance || !work) return false;
+  double *work;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(spectrum->singular, n), STRUT_NEW(work, n),
+                      STRUT_NEW(spectrum->direction, n * n),
+                      STRUT_NEW(spectrum->covariance, n * n)))
+    return false;
   gsl_matrix_view matrix = gsl_matrix_view_array(jacobian, count, n);
   gsl_matrix_view directions = gsl_matrix_view_array(spectrum->direction, n, n);
   gsl_vector_view singular = gsl_vector_view_array(spectrum->singular, n);

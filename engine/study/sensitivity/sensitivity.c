@@ -415,14 +415,11 @@ static bool estimate_indices(const samples *self, const size_t *pick, double *in
 }
 
 static strut_estimate describe(double value, double *drawn, size_t count) {
-  double sum = 0.0, square = 0.0;
+  double deviation;
   if (count < BOOTSTRAPS / 2) return (strut_estimate){value, (double)NAN, (double)NAN, (double)NAN};
-  for (size_t i = 0; i < count; i++) sum += drawn[i];
-  double mean = sum / (double)count;
-  for (size_t i = 0; i < count; i++) square += (drawn[i] - mean) * (drawn[i] - mean);
+  mean_of(drawn, count, &deviation);
   gsl_sort(drawn, 1, count);
-  return (strut_estimate){value, sqrt(square / (double)(count - 1)),
-                          drawn[(size_t)(0.025 * (double)(count - 1))],
+  return (strut_estimate){value, deviation, drawn[(size_t)(0.025 * (double)(count - 1))],
                           drawn[(size_t)(0.975 * (double)(count - 1))]};
 }
 

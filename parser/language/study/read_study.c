@@ -400,20 +400,10 @@ static const strut_scene_source *source_of(const strut_study_file *file,
   return file->sources[i];
 }
 
-/* Does a match of the fit run the model? */
-static bool fits_motions(const strut_study_fit *fit) {
-  bool found = false;
-  for (size_t m = 0; m < fit->match_count; m++) {
-    const strut_fit_match *match = &fit->matches[m];
-    found = found || match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST ||
-            (match->kind == STRUT_FIT_TABLE && match->compute == STRUT_COMPUTE_RUN);
-  }
-  return found;
-}
-
 /* What the scenes of the study are for. */
 static strut_purpose purpose_of(const strut_study *study) {
-  if (study->follow || (study->fit && fits_motions(study->fit))) return STRUT_FOR_RUN_STEP_LATER;
+  if (study->follow || (study->fit && strut_study_fit_computes(study->fit, "run")))
+    return STRUT_FOR_RUN_STEP_LATER;
   return study->compute == STRUT_COMPUTE_RUN && !study->fit ? STRUT_FOR_RUN : STRUT_FOR_ANY_STATICS;
 }
 

@@ -192,6 +192,15 @@ static bool check_numbers(strut_study_reader *reader, const reading *self, const
                                  "no number of this match has a weight above 0");
 }
 
+/* Does the model itself measure a quantity of that name? */
+static bool is_measured(const strut_study_file *file, const char *name) {
+  const char *const keys[] = {"run", "measure", "quantities", name};
+  const strut_tree *at = file->source_count ? file->sources[0]->document.root : NULL;
+  for (size_t i = 0; i < sizeof keys / sizeof *keys && at; i++)
+    at = at->kind == STRUT_TREE_MAP ? strut_tree_find(at, keys[i], NULL) : NULL;
+  return at != NULL;
+}
+
 static bool add_series(strut_study_reader *reader, reading *self, const strut_tree *key) {
   strut_fit_series *series = &self->to->series[self->to->series_count];
   *series = (strut_fit_series){.of = key->text, .place = {key->place.line, key->place.column}};
@@ -201,7 +210,8 @@ static bool add_series(strut_study_reader *reader, reading *self, const strut_tr
     return false;
   self->to->series_count++;
   bool moves = self->to->kind == STRUT_FIT_MOTION || self->to->kind == STRUT_FIT_REST;
-  if (moves && !strut_study_measure(reader->file, key)) reader->reader->out_of_memory = true;
+  if (moves && !is_measured(reader->file, key->text) && !strut_study_measure(reader->file, key))
+    reader->reader->out_of_memory = true;
   return true;
 }
 
@@ -255,6 +265,7 @@ static void choose_kind(strut_study_reader *reader, reading *self) {
                    : curve   ? STRUT_FIT_CURVE
                    : table   ? STRUT_FIT_TABLE
                              : STRUT_FIT_REST;
+  if (curve) self->to->compute = STRUT_COMPUTE_PATH;
   if (align->state == STRUT_GIVEN)
     strut_read_object(reader->reader, STRUT_SECTION_ALIGN, align->value, self->owner, &fields,
                       self->to);
@@ -396,6 +407,21 @@ static void require_noise(strut_study_reader *reader, const strut_tree *matches,
   }
 }
 
+/* The same numbers, twice, would seem to be twice as many. */
+static void refuse_twice(strut_study_reader *reader, const strut_fit_match *a,
+                         const strut_fit_match *b) {
+  for (size_t s = 0; s < a->series_count; s++)
+    for (size_t k = 0; k < b->series_count; k++) {
+      const strut_fit_series *first = &b->series[k], *second = &a->series[s];
+      if (first != second && !second->empty && first->measured == second->measured &&
+          (a != b || k < s))
+        strut_report_error(reader->reader,
+                           strut_place_at(second->place.line, second->place.column, 1),
+                           "the numbers of '%s' are compared already, with '%s' of match '%s'",
+                           strut_sanitised_text(reader->reader, second->of), first->of, b->name);
+    }
+}
+
 /* The first values of all axes. */
 static strut_study_value *first_values(strut_study_reader *reader) {
   const strut_study *study = &reader->file->study;
@@ -441,18 +467,13 @@ static void check_durations(strut_study_reader *reader, const strut_tree *matche
   strut_setup_free(&setup);
 }
 
-/* Does a match compute one of the words? */
-static bool computes(const strut_study_fit *fit, const char *words) {
+bool strut_study_fit_computes(const strut_study_fit *fit, const char *words) {
+  const char *const all = strut_key_at(STRUT_KEY_MATCH_COMPUTE)->words;
+  char word[40];
   bool found = false;
-  for (size_t m = 0; m < fit->match_count; m++) {
-    char word[40] = "run";
-    const strut_fit_match *match = &fit->matches[m];
-    if (match->kind == STRUT_FIT_CURVE) strcpy(word, "path");
-    if (match->kind == STRUT_FIT_TABLE)
-      strut_word_at(strut_key_at(STRUT_KEY_MATCH_COMPUTE)->words, (int)match->compute, word,
-                    sizeof word);
-    found = found || strut_word_find(words, word) >= 0;
-  }
+  for (size_t m = 0; m < fit->match_count && !found; m++)
+    found = strut_word_at(all, (int)fit->matches[m].compute, word, sizeof word) &&
+            strut_word_find(words, word) >= 0;
   return found;
 }
 
@@ -463,7 +484,7 @@ static void refuse_unused(strut_study_reader *reader, strut_fields *top,
   for (int k = first; k < first + n; k++) {
     const strut_slot *slot = strut_slot_of(top, k);
     const char *words = strut_study_key_computes(k);
-    if (words && slot->state == STRUT_GIVEN && !computes(fit, words))
+    if (words && slot->state == STRUT_GIVEN && !strut_study_fit_computes(fit, words))
       strut_report_error(reader->reader, slot->key->place, "no match of the fit uses '%s'",
                          slot->key->text);
   }
@@ -503,6 +524,8 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
     read_match(reader, key, &fit->matches[fit->match_count++]);
   }
   require_noise(reader, matches->value, fit);
+  for (size_t m = 0; m < fit->match_count; m++)
+    for (size_t k = 0; k <= m; k++) refuse_twice(reader, &fit->matches[m], &fit->matches[k]);
   refuse_unused(reader, top, fit);
   strut_study_axis *rows = &study->axes[study->axis_count++];
   add_rows(reader, fit, over->value->count, rows);

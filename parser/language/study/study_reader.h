@@ -27,6 +27,8 @@ const strut_declared *strut_study_parameter(strut_study_reader *reader, const st
                                             const char *advice);
 /** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
 bool strut_study_measure(strut_study_file *file, const strut_tree *column);
+/** Does a match of the fit compute one of the words of `compute`? */
+bool strut_study_fit_computes(const strut_study_fit *fit, const char *words);
 /** Opens the model that the study names, once for each variant, lays their keys over it, and finds its parameters. */
 strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *top,
                                       strut_error *error);
