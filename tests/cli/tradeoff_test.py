@@ -214,6 +214,9 @@ for row, setting in zip(rows, written["settings"]):
         fail(f"{row} and {setting} differ")
 svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
 check("</svg>" in svg, "half a picture")
+steps = re.findall(r">([\d.]+ .?s(?:, [^<]*)?)</t>", svg)  # of the front: equal ones with their methods
+front = sum(s["front"] and s["model"] == written["settings"][0]["model"] for s in written["settings"])
+check(steps and len(set(steps)) == len(steps) <= front, f"labels {steps} of {front} settings on the front")
 before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
 os.mkdir(os.path.join(here, "blocked"))
 os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))

@@ -225,8 +225,9 @@ static const char *group_text(maker *self, int column, const strut_table_groups 
   const strut_table_column *of = column_of(self, column);
   double value = of->value ? of->value[groups->row[i]] : (double)NAN;
   bool unit = isfinite(value) && (*of->unit || of->shown.name);
+  bool named = *of->name > ' '; /* else the texts say all */
   return strut_figure_text(
-      &self->page, "%s%s%s", of->name, *of->name ? between : "",
+      &self->page, "%s%s%s", named ? of->name : "", named ? between : "",
       unit ? strut_quantity_shown(value, DIGITS, *of->unit ? of->unit : "1", of->shown).text
            : groups->name[i]);
 }
@@ -295,18 +296,17 @@ static const char *curve_name(maker *self, size_t curve, int k) {
                            group_text(self, self->by, &self->curves, curve, " "));
 }
 
-/* A dot in the colour of its kind. */
+/* A dot in the colour of its kind, or a text alone. */
 static void add_kind(maker *self, strut_panel *panel, size_t row, const strut_point *at) {
-  const char *kind = column_of(self, self->mark)->text[row];
-  const strut_table_column *thing = column_of(self, self->thing);
-  if (!*kind) return;
-  strut_label *mark = strut_add_mark(
+  const strut_table_column *mark = column_of(self, self->mark), *of = column_of(self, self->thing);
+  const char *kind = mark ? mark->text[row] : "", *thing = of ? of->text[row] : "";
+  if (mark ? !*kind : !*thing) return;
+  strut_label *label = strut_add_mark(
       &self->page, panel, at->x, at->y,
-      strut_figure_text(&self->page, "%s%s%.60s", kind, thing && *thing->text[row] ? " " : "",
-                        thing ? thing->text[row] : ""));
-  mark->dot = true;
-  mark->colour = strut_palette_thing((size_t)index_of(&self->kinds, kind));
-  mark->angle = 0.25 * STRUT_PI;
+      strut_figure_text(&self->page, "%s%s%.60s", kind, *kind && *thing ? " " : "", thing));
+  label->dot = mark != NULL;
+  if (mark) label->colour = strut_palette_thing((size_t)index_of(&self->kinds, kind));
+  label->angle = (mark ? 0.25 : 1.25) * STRUT_PI;
 }
 
 static void add_row(maker *self, strut_panel *panel, strut_series *series, int y, size_t row,
@@ -315,7 +315,7 @@ static void add_row(maker *self, strut_panel *panel, strut_series *series, int y
   strut_point *point = strut_add_point(&self->page, series, x, value_of(self, y, row));
   point->low = value_of(self, self->low, row), point->high = value_of(self, self->high, row);
   point->unstable = stable && strcmp(stable->text[row], "no") == 0;
-  if (self->mark != STRUT_NO_COLUMN) add_kind(self, panel, row, point);
+  add_kind(self, panel, row, point);
 }
 
 /* True if a line ends between two rows. */
@@ -352,6 +352,7 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
     size_t curve = n / (size_t)self->y_count, k = n % (size_t)self->y_count;
     if (k == 0) count = rows_of(self, number, curve, row);
     if (k == 0 && !places) add_bands(self, row, count, panel);
+    if (!count && self->wanted->apart) continue;
     strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
     if (places) add_bars(self, panel, series, n, row, count);
     if (self->stable != STRUT_NO_COLUMN)
@@ -614,6 +615,8 @@ static void add_panel(maker *self, size_t i) {
   strut_panel *panel = strut_add_panel(&self->page);
   panel->x = strut_axis_in(x->name, x->unit, x->shown);
   panel->y = strut_axis_in(name_y_axis(self), y->unit, y->shown);
+  panel->lost = self->wanted->lost;
+  panel->room = panel->lost ? 0.06 : 0;
   panel->x.logarithmic = self->wanted->log_x, panel->y.logarithmic = self->wanted->log_y;
   if (value && value->value)
     panel->scale = (strut_colour_scale){.name = name_of(self, self->value),
@@ -671,10 +674,12 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
                               strut_error *error) {
   const char *text = NULL;
   maker m = {.wanted = figure, .marks = marks, .error = error};
-  m.page = (strut_figure){.least_width = is_map(&m) ? MAP_WIDTH : CURVES_WIDTH,
+  m.page = (strut_figure){.least_width = figure->apart ? 0
+                                         : is_map(&m)  ? MAP_WIDTH
+                                                       : CURVES_WIDTH,
                           .aspect = is_map(&m) ? 0.8 : 0.62,
-                          .shared_axes = true,
-                          .one_legend = true};
+                          .shared_axes = !figure->apart,
+                          .one_legend = !figure->apart};
   find_columns(&m, table);
   assert(m.y_count > 0);
   int only = find_column(table, figure->only, &text);
