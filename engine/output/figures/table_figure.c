@@ -24,6 +24,7 @@ enum {
 
 /* A figure being filled in. Columns by number. */
 typedef struct maker {
+  const strut_plot *plot;
   const strut_study_figure *wanted;
   strut_table_marks marks;
   int x, y[STRUT_MOST_Y], y_count, panel;
@@ -442,7 +443,7 @@ static strut_status prepare(maker *self) {
     if (groups[i].wanted)
       status = strut_table_groups_find(&self->rows, groups[i].column, STRUT_MOST_TABLE_GROUPS,
                                        groups[i].what, groups[i].groups, self->error);
-  if (!status && bars && self->wanted->log_x)
+  if (!status && bars && self->plot->x.logarithmic)
     status = strut_fail(self->error, STRUT_USAGE,
                         "column '%.60s' holds texts, which have no logarithmic axis",
                         column_of(self, self->x)->name);
@@ -462,7 +463,6 @@ static void add_panel(maker *self, size_t i) {
   panel->y = strut_axis_in(name_y_axis(self), y->unit, y->shown);
   panel->lost = self->wanted->lost;
   panel->room = panel->lost ? 0.06 : 0;
-  panel->x.logarithmic = self->wanted->log_x, panel->y.logarithmic = self->wanted->log_y;
   if (value && value->value)
     panel->scale = (strut_colour_scale){.name = name_of(self, self->value),
                                         .unit = value->unit,
@@ -518,7 +518,7 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
                               const strut_table *table, strut_table_marks marks,
                               strut_error *error) {
   const char *text = NULL;
-  maker m = {.wanted = figure, .marks = marks, .error = error};
+  maker m = {.plot = plot, .wanted = figure, .marks = marks, .error = error};
   m.page = (strut_figure){.least_width = figure->apart ? 0
                                          : is_map(&m)  ? MAP_WIDTH
                                                        : CURVES_WIDTH,

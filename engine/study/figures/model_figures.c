@@ -277,12 +277,12 @@ strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff 
                                      .low = "low",
                                      .high = "high",
                                      .lost = "at the upper edge: diverged",
-                                     .log_x = true,
-                                     .log_y = true,
                                      .apart = true};
+  strut_plot scaled = *plot;
+  scaled.x.logarithmic = scaled.y.logarithmic = true;
   bool fine = cost && measure && begin_diagram(&d, cost, measure) && fill_diagram(&d);
   strut_status status =
-      fine ? strut_table_draw(plot, &figure, &d.table, (strut_table_marks){0}, error)
+      fine ? strut_table_draw(&scaled, &figure, &d.table, (strut_table_marks){0}, error)
            : strut_no_memory(error, "while drawing");
   strut_arena_free(&d.table.arena);
   return status;

@@ -19,7 +19,7 @@ void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table) {
 }
 
 static strut_axis_choice axis_of(const char *label, const double limits[2]) {
-  return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
+  return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1], false};
 }
 
 static strut_plot plot_of(const strut_study_figure *figure, const char *path) {
@@ -189,7 +189,7 @@ strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study 
                                        .label_count = one ? 2 : 0,
                                        .labels = labels};
     own.columns[of].name = figure.panels;
-    limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2};
+    limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2, false};
     status = strut_table_draw(&limited, &figure, &own, (strut_table_marks){.shown = shown}, error);
   }
   strut_arena_free(&own.arena);
