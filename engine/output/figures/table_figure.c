@@ -42,6 +42,13 @@ typedef struct maker {
   strut_error *error;
 } maker;
 
+/* COLUMN=TEXT, or a column alone. */
+static int find_column(const strut_table *table, const char *name, const char **text) {
+  size_t length = name ? strcspn(name, text ? "=" : "") : 0;
+  if (name && text) *text = name + length + 1;
+  return strut_table_column_of(table, name, length);
+}
+
 static bool is_map(const maker *self) { return self->wanted->kind == STRUT_FIGURE_MAP; }
 
 static const strut_table_column *column_of(const maker *self, int column) {
@@ -78,12 +85,14 @@ static const char *group_text(maker *self, int column, const strut_table_groups 
            : groups->name[i]);
 }
 
-/* "velocity", or "velocity, b less a". */
+/* "velocity", or "velocity, b less a", or "velocity, friction 0.3 less 0.1". */
 static const char *name_of(maker *self, int column) {
   const strut_table_column *of = column_of(self, column);
   if (!of->value || !strut_table_compares(&self->rows, column)) return of->name;
-  return strut_figure_text(&self->page, "%s, %s less %s", of->name, self->rows.side[1],
-                           self->rows.side[0]);
+  const char *between = self->wanted->difference;
+  bool named = column_of(self, find_column(self->rows.table, between, NULL))->value;
+  return strut_figure_text(&self->page, "%s, %s%s%s less %s", of->name, named ? between : "",
+                           named ? " " : "", self->rows.side[1], self->rows.side[0]);
 }
 
 static bool is_in_panel(const maker *self, size_t panel, size_t row) {
@@ -478,13 +487,6 @@ static void add_panel(maker *self, size_t i) {
                                                : add_curves)(self, i, panel);
 }
 
-/* COLUMN=TEXT, or a column alone. */
-static int find_column(const strut_table *table, const char *name, const char **text) {
-  size_t length = name ? strcspn(name, text ? "=" : "") : 0;
-  if (name && text) *text = name + length + 1;
-  return strut_table_column_of(table, name, length);
-}
-
 /* Finds the columns by their names. */
 static void find_columns(maker *self, const strut_table *table) {
   const strut_study_figure *wanted = self->wanted;
@@ -534,7 +536,7 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
     m.rows.shown[i] = m.rows.shown[i] && marks.shown[i];
   if (!status) status = prepare(&m);
   for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
-  add_keys(&m);
+  if (!status) add_keys(&m);
   if (!status) status = strut_figure_draw(plot, &m.page, error);
   strut_arena_free(&m.page.arena);
   return status;

@@ -293,7 +293,10 @@ static strut_status draw_point(pictures *self, int64_t point, strut_error *error
     status = open_run(plan, self->directory, self->figure, with, &other, &beside, error);
     const char *name = NULL;
     for (size_t i = 0; i < plan->axis_columns && !status; i++)
-      if (strcmp(plan->columns[i].name, self->figure->difference) == 0) name = other.texts[i];
+      if (strcmp(plan->columns[i].name, self->figure->difference) == 0)
+        name = plan->columns[i].word ? other.texts[i]
+                                     : strut_arena_format(&other.arena, "%s %s",
+                                                          plan->columns[i].name, other.texts[i]);
     if (!status) status = draw(self, &o, beside ? &other : NULL, name, error);
     close_run(&other);
   } else if (!status && there) {

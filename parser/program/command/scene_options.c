@@ -503,7 +503,9 @@ strut_status strut_table_parse(const strut_listener *listener, const char *path,
   }
   strut_diagnostics_free(&diagnostics);
   strut_arena_free(&csv.arena);
-  if (status != STRUT_OK) strut_arena_free(&table->arena);
+  if (status == STRUT_OK) return STRUT_OK;
+  strut_arena_free(&table->arena);
+  *table = (strut_table){0};
   return status;
 }
 
