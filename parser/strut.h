@@ -38,7 +38,6 @@ extern "C" {
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/figures/table_figure.h"
-#include "engine/output/figures/work_precision.h"
 #include "engine/output/file.h"
 #include "engine/output/page/page.h"
 #include "engine/output/record_files.h"

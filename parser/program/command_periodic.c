@@ -259,9 +259,11 @@ static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                                 curves ? "curves.points" : "branches.points", NULL, result, NULL);
   strut_status status = text ? strut_table_parse(NULL, "", text, strlen(text), &table)
                              : strut_no_memory(error, "while drawing");
-  strut_table_show_unit(&table, result->name, result->shown);
-  strut_table_show_unit(&table, result->second.name, result->second.shown);
-  if (!status) status = strut_follow_figure(plot, result->title, 0, &table, error);
+  if (!status) {
+    strut_table_show_unit(&table, result->name, result->shown);
+    strut_table_show_unit(&table, result->second.name, result->second.shown);
+    status = strut_follow_figure(plot, result->title, 0, &table, error);
+  }
   strut_arena_free(&table.arena);
   strut_release(text);
   return status;

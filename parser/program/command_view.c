@@ -271,12 +271,10 @@ static strut_status read_figure(const strut_arguments *arguments, strut_table *t
                                 strut_study_figure *figure) {
   const strut_table_column *columns = table->columns;
   const strut_figure_columns names = {"the table", column_name_at, judge_text, table};
-  const strut_given_word *log = &arguments->log;
   char fault[STRUT_MESSAGE_MOST];
   bool map = arguments->kind.index == 1;
   *figure = arguments->drawn;
   figure->kind = map ? STRUT_FIGURE_MAP : STRUT_FIGURE_LINES;
-  figure->log_x = log->text && log->index != 1, figure->log_y = log->text && log->index != 0;
   figure->colours = (strut_study_colours)arguments->colors.index;
   if (!figure->x) figure->x = columns[0].name;
   if (!figure->y) figure->y = columns[table->column_count > 1 ? 1 : 0].name;
@@ -320,7 +318,6 @@ static strut_status run_plot(const strut_arguments *arguments) {
   status = strut_table_read(arguments->listener, arguments->model, &table);
   if (status != STRUT_OK) return status;
   status = read_figure(arguments, &table, &figure);
-  if (!status) status = strut_axes_read(arguments, figure.log_x, figure.log_y, &plot.x, &plot.y);
   if (!status) status = strut_table_draw(&plot, &figure, &table, (strut_table_marks){0}, &error);
   if (error.message[0]) strut_print_error(&error);
   strut_arena_free(&table.arena);

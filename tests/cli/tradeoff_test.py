@@ -184,6 +184,9 @@ for row, setting in zip(table, written["settings"]):
     check((float(row["step [s]"]), row["group"], float(row["error worst"])) ==
           (setting["step"], setting["group"], error), f"{row} and {setting} differ")
 check(b"</svg>" in before[2], "half a picture")
+steps = re.findall(r">([\d.]+ .?s(?:, [^<]*)?)</t>", before[2].decode())  # of the front: equal ones with their methods
+front = sum(s["front"] and s["model"] == written["settings"][0]["model"] for s in written["settings"])
+check(steps and len(set(steps)) == len(steps) <= front, f"labels {steps} of {front} settings on the front")
 os.makedirs(path("blocked/tradeoff.svg"))
 done = run(BALL, "--step-sizes", "1", "-o", "blocked", code=4)
 check(not done.stdout and files_in(path("blocked")) == ["tradeoff.svg"],

@@ -293,6 +293,12 @@ for name, _, _ in rows:
 plot("same.csv", "--log", "x", "--plot", "a.svg", code=1, err="'gait' holds texts, which have no logarithmic axis")
 plot("two.csv", "--x", "v", "--y", "v,w", "--plot", "a.svg", code=1, err="different units (m/s, J)")
 
+# The data of a figure have the axes that were asked for.
+plot("same.csv", "--x", "gait", "--y", "speed", "--y-label", "pace", "--y-limits", "1,9", "--log", "y",
+     "--plot", "axes.json")
+axis = json.load(open("axes.json"))["panels"][0]["y"]
+check((axis["name"], axis["from"], axis["to"], axis["logarithmic"]) == ("pace", 1, 9, True), f"axes.json: {axis}")
+
 # Charts of a row line up below titles of one line and of two.
 write("titles.csv", "kind,x,y\n" + "".join(f"{name},{x},{x}\n" for name in ("a", "a name for which two lines are needed")
                                         for x in (1, 2)))

@@ -140,6 +140,7 @@ figures:
   named: {x: stiffness, y: velocity, series: tilt, labels: [level, "half, way", steep], panels: stretch,
           band: status=completed}
   map: {kind: map, x: tilt, y: stretch, color: velocity, panels: stiffness}
+  less: {x: tilt, y: velocity, series: stiffness, difference: stretch}
 """
 os.rename("out", "driven")
 sweep(UNITS)
@@ -147,6 +148,7 @@ check(open("out/table.csv").read().startswith("point,tilt [rad],stretch [m],stif
 for name, wanted, missing in (
         ("lines", ("tilt in deg", "velocity in mm/s", "a) stiffness = 0.1 kN/m", "b) stiffness = 3 kN/m", "25"), ("30",)),
         ("named", ("stiffness in kN/m", "a) stretch = 0.5 mm", "b) stretch = 20 mm", "level", "half, way", "steep", "status completed"), ()),
+        ("less", ("velocity, stretch 0.02 less 0.0005 in mm/s",), ()),
         ("map", ("tilt in deg", "stretch in mm", "60", "20", "25"), ("tilt in rad",))):
     said = texts(f"out/{name}.svg")
     check(set(wanted) <= set(said) and not set(missing) & set(said), f"{name}.svg: {said}")

@@ -2,7 +2,7 @@
 /* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best. */
 #include "engine/base/vec.h"
 #include "engine/output/draw/painter.h"
-#include "engine/output/figures/work_precision.h"
+#include "engine/study/tradeoff/tradeoff.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"
@@ -180,49 +180,24 @@ TEST(thinning) {
 
 TEST(front) {
   enum { COUNT = 60 };
-  strut_saving b[COUNT];
+  double b[COUNT][2];
   bool front[COUNT];
   uint64_t seed = 3;
   for (int round = 0; round < 200; round++) {
-    for (size_t i = 0; i < COUNT; i++)
-      b[i] = (strut_saving){.cost = 1 + floor(10 * random_between(&seed, 0, 1)),
-                            .error = random_between(&seed, 0, 1) < 0.1
-                                         ? (double)NAN
-                                         : 1 + floor(10 * random_between(&seed, 0, 1)),
-                            .low = (double)NAN,
-                            .high = (double)NAN};
-    strut_pareto_front(b, COUNT, front);
     for (size_t i = 0; i < COUNT; i++) {
-      bool beaten = !isfinite(b[i].error);
+      b[i][0] = 1 + floor(10 * random_between(&seed, 0, 1));
+      b[i][1] = random_between(&seed, 0, 1) < 0.1 ? (double)NAN
+                                                  : 1 + floor(10 * random_between(&seed, 0, 1));
+    }
+    strut_pareto_front((const double(*)[2])b, COUNT, front);
+    for (size_t i = 0; i < COUNT; i++) {
+      bool beaten = !isfinite(b[i][1]);
       for (size_t k = 0; k < COUNT; k++)
-        if (isfinite(b[k].error) && ((b[k].cost < b[i].cost && b[k].error <= b[i].error) ||
-                                     (b[k].cost <= b[i].cost && b[k].error < b[i].error)))
+        if (isfinite(b[k][1]) && ((b[k][0] < b[i][0] && b[k][1] <= b[i][1]) ||
+                                  (b[k][0] <= b[i][0] && b[k][1] < b[i][1])))
           beaten = true;
       assert_int_equal(front[i], !beaten);
     }
-  }
-}
-
-/* Two methods with the same step on the front: their labels differ. */
-TEST(labels_of_the_front) {
-  static const strut_saving savings[] = {{"rk4", "50 us", 1, 1e-3, (double)NAN, (double)NAN},
-                                         {"verlet", "50 us", 2, 1e-4, (double)NAN, (double)NAN},
-                                         {"verlet", "25 us", 3, 1e-5, (double)NAN, (double)NAN}};
-  static const char *const labels[] = {"50 \u00b5s, rk4", "50 \u00b5s, verlet", "25 \u00b5s"};
-  strut_error error;
-  strut_figure figure = {0};
-  char label[40];
-  scratch_make();
-  const char *path = scratch_path("front.svg");
-  strut_add_work_precision(&figure, strut_axis_of("cost", ""), strut_axis_of("error", "m"), savings,
-                           3);
-  assert_int_equal(strut_figure_draw(&(strut_plot){.path = path}, &figure, &error), STRUT_OK);
-  size_t length;
-  FREED char *text = scratch_read(path, &length);
-  assert_non_null(text);
-  for (size_t i = 0; i < 3; i++) { /* an SVG lists its texts */
-    snprintf(label, sizeof label, "%s<", labels[i]);
-    if (!strstr(text, label)) fail_msg("no label '%s'", labels[i]);
   }
 }
 

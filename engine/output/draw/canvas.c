@@ -55,22 +55,22 @@ static double clamp_coordinate(double coordinate) {
 /* Cairo (1.16: surface7, 1.18: source-7) numbers the surfaces of SVG files through the life of the process. Counting
    them from the first one in every picture makes its bytes independent of what was drawn before. Texts are outlines,
    so no other text matches. */
-static gboolean renumber(const GMatchInfo *found, GString *svg, gpointer first) {
-  gchar *name = g_match_info_fetch(found, 1), *digits = g_match_info_fetch(found, 2);
-  long number = atol(digits), *base = first;
-  if (*base < 0) *base = number;
-  g_string_append_printf(svg, "%s%ld", name, number - *base);
-  g_free(name);
-  g_free(digits);
-  return FALSE;
-}
-
 static gchar *renumber_surfaces(const char *svg) {
+  enum { LENGTH = 7 };
+  GString *out = g_string_sized_new(strlen(svg));
   long first = -1;
-  GRegex *regex = g_regex_new("(surface|source-)([0-9]+)", G_REGEX_RAW, 0, NULL);
-  gchar *result = g_regex_replace_eval(regex, svg, -1, 0, 0, renumber, &first, NULL);
-  g_regex_unref(regex);
-  return result;
+  while (*svg) {
+    bool name = strncmp(svg, "surface", LENGTH) == 0 || strncmp(svg, "source-", LENGTH) == 0;
+    g_string_append_len(out, svg, name ? LENGTH : 1);
+    svg += name ? LENGTH : 1;
+    if (!name || !g_ascii_isdigit(*svg)) continue;
+    char *end;
+    long number = strtol(svg, &end, 10);
+    if (first < 0) first = number;
+    g_string_append_printf(out, "%ld", number - first);
+    svg = end;
+  }
+  return g_string_free(out, FALSE);
 }
 
 /* ---- texts, set by Pango: any script, either direction, taken literally ---- */
@@ -96,21 +96,28 @@ static PangoLayout *create_layout(cairo_t *cairo) {
   return layout;
 }
 
+static bool begins_unit(const char *text) {
+  static const char *const units[] = {"s", "m", "N", "J", "W", "Hz", "rad", "Pa"};
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (g_str_has_prefix(text, units[i]) && !g_ascii_isalnum(text[strlen(units[i])])) return true;
+  return false;
+}
+
 /* The text with "50 us" and "-1", as terminals and tables write them, as "50 µs" and "−1". To be freed. */
 static gchar *write_signs(const gchar *text) {
-  static const struct {
-    const char *written, *drawn;
-  } signs[] = {{"(?<=[0-9] )u(?=(s|m|N|J|W|Hz|rad|Pa)(?![A-Za-z0-9]))", "\xc2\xb5"},
-               {"(?<![\\w.)-])-(?=[0-9])", "\xe2\x88\x92"}};
-  gchar *result = g_strdup(text);
-  for (size_t i = 0; i < 2 && strpbrk(text, "u-"); i++) {
-    GRegex *regex = g_regex_new(signs[i].written, 0, 0, NULL);
-    gchar *changed = g_regex_replace_literal(regex, result, -1, 0, signs[i].drawn, 0, NULL);
-    g_regex_unref(regex);
-    g_free(result);
-    result = changed;
+  GString *out = g_string_new(NULL);
+  for (const char *c = text; *c; c++) {
+    char before = c > text ? c[-1] : ' ';
+    bool word = g_ascii_isalnum(before) || before < 0 || strchr("_.)-", before);
+    if (*c == '-' && !word && g_ascii_isdigit(c[1]))
+      g_string_append(out, "\xe2\x88\x92");
+    else if (*c == 'u' && before == ' ' && c > text + 1 && g_ascii_isdigit(c[-2]) &&
+             begins_unit(c + 1))
+      g_string_append(out, "\xc2\xb5");
+    else
+      g_string_append_c(out, *c);
   }
-  return result;
+  return g_string_free(out, FALSE);
 }
 
 static void set_text(strut_canvas *canvas, const char *text, const strut_font *font) {

@@ -33,11 +33,12 @@ static inline strut_axis strut_axis_in(const char *name, const char *unit, strut
   return axis;
 }
 
-/** A label and a range that replace those of an axis. Zero-initialised: none. */
+/** What replaces an axis's own. Zero-initialised: nothing. */
 typedef struct strut_axis_choice {
   const char *label; /* replaces the name; the unit still follows; NULL: the name stays */
   bool limited;      /* the axis goes from low to high, in its unit */
   double low, high;
+  bool logarithmic;
 } strut_axis_choice;
 
 /**
@@ -52,7 +53,7 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
  * axis, 0 to 1 where nothing was included; widened by `room` of its width on either side.
  */
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
-/** Replaces the name and, after strut_axis_settle, the range of an axis where `choice` has one. */
+/** Replaces name, range and kind of an axis where `choice` has one. */
 STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
 
 /* Outliers: few values that would take most of a scale lie beyond it, marked and counted. */

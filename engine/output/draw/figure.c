@@ -23,11 +23,8 @@ static bool begin_page(page *self, strut_figure *figure, const strut_plot *plot)
   size_t together = figure->shared_axes ? figure->panel_count : 1, room = 1;
   bool fine = !figure->failed;
   *self = (page){.figure = figure, .title = plot->title ? plot->title : figure->title};
-  for (size_t i = 0; i < figure->panel_count; i++) {
-    strut_axis_choose(&figure->panels[i].x, &plot->x);
-    strut_axis_choose(&figure->panels[i].y, &plot->y);
+  for (size_t i = 0; i < figure->panel_count; i++)
     room += strut_panel_legend_room(&figure->panels[i]);
-  }
   for (size_t i = 0; i < figure->panel_count && fine; i += together)
     fine = strut_panels_settle(&figure->panels[i], together, &figure->arena);
   self->items = strut_arena_allocate(&figure->arena, room, sizeof *self->items);

@@ -212,6 +212,10 @@ strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, str
   const strut_cairo_library *cairo = NULL;
   strut_c_locale locale = strut_c_locale_enter();
   strut_status status = strut_figure_check_name(plot->path, error);
+  for (size_t i = 0; i < figure->panel_count; i++) {
+    strut_axis_choose(&figure->panels[i].x, &plot->x);
+    strut_axis_choose(&figure->panels[i].y, &plot->y);
+  }
   if (!status && figure->failed) status = strut_no_memory(error, "while drawing");
   if (!status && strut_picture_format_of(plot->path) == STRUT_PICTURE_JSON)
     status = write_json(plot, figure, error);

@@ -11,161 +11,6 @@
 
 #include "engine/base/vec.h"
 
-int strut_table_column_of(const strut_table *table, const char *name, size_t length) {
-  for (size_t i = 0; name && i < table->column_count; i++)
-    if (strlen(table->columns[i].name) == length &&
-        memcmp(table->columns[i].name, name, length) == 0)
-      return (int)i;
-  return STRUT_NO_COLUMN;
-}
-
-void strut_table_show_unit(strut_table *table, const char *name, strut_file_unit shown) {
-  int column = name ? strut_table_column_of(table, name, strlen(name)) : STRUT_NO_COLUMN;
-  if (column != STRUT_NO_COLUMN) table->columns[column].shown = shown;
-}
-
-bool strut_table_belongs(const strut_table_rows *rows, int column, const char *name, size_t row) {
-  return rows->shown[row] &&
-         (column == STRUT_NO_COLUMN || strcmp(rows->table->columns[column].text[row], name) == 0);
-}
-
-strut_status strut_table_groups_find(const strut_table_rows *rows, int column, size_t most,
-                                     const char *what, strut_table_groups *groups,
-                                     strut_error *error) {
-  groups->count = column == STRUT_NO_COLUMN;
-  groups->name[0] = NULL;
-  for (size_t i = 0; i < rows->table->row_count && column != STRUT_NO_COLUMN; i++) {
-    const strut_table_column *of = &rows->table->columns[column];
-    size_t k = 0;
-    while (k < groups->count && strcmp(groups->name[k], of->text[i]) != 0) k++;
-    if (!rows->shown[i] || k < groups->count) continue;
-    if (groups->count == most)
-      return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s", of->name, most,
-                        what);
-    groups->row[groups->count] = i;
-    groups->name[groups->count++] = of->text[i];
-  }
-  return STRUT_OK;
-}
-
-/* ---- the difference of two sides ---- */
-
-/* A row that knows where its keys are, to be sorted. */
-typedef struct keyed {
-  const strut_table_rows *rows;
-  size_t row;
-  int keys; /* that count */
-} keyed;
-
-/* Numbers by value, NAN first; texts alphabetically. */
-static int compare_keys(const void *first, const void *second) {
-  const keyed *one = first, *two = second;
-  for (int i = 0; i < one->keys; i++) {
-    int column = one->rows->keys[i];
-    if (column == STRUT_NO_COLUMN) continue;
-    const strut_table_column *of = &one->rows->table->columns[column];
-    int order;
-    if (of->value) {
-      double x = of->value[one->row], y = of->value[two->row];
-      order = isnan(x) || isnan(y) ? isnan(y) - isnan(x) : (x > y) - (x < y);
-    } else {
-      order = strcmp(of->text[one->row], of->text[two->row]);
-    }
-    if (order) return order;
-  }
-  return 0;
-}
-
-/* True if all keys but the last are equal. */
-static bool alongside(keyed first, keyed second) {
-  first.keys--;
-  return compare_keys(&first, &second) == 0;
-}
-
-/* Among (count) sorted rows. */
-static strut_table_partner find_partner(const keyed *first, size_t count, const keyed *wanted) {
-  const strut_table_rows *rows = wanted->rows;
-  size_t low = 0, high = count;
-  while (low < high) { /* the first not before `wanted` */
-    size_t middle = (low + high) / 2;
-    bool before = compare_keys(&first[middle], wanted) < 0;
-    *(before ? &low : &high) = middle + before;
-  }
-  if (low < count && compare_keys(&first[low], wanted) == 0)
-    return (strut_table_partner){first[low].row, first[low].row, 0};
-  if (!rows->between || low == 0 || low == count || !alongside(first[low - 1], *wanted) ||
-      !alongside(first[low], *wanted))
-    return (strut_table_partner){SIZE_MAX, SIZE_MAX, 0};
-  const double *x = rows->table->columns[rows->keys[STRUT_KEYS_OF_ROWS - 1]].value;
-  size_t before = first[low - 1].row, after = first[low].row;
-  return (strut_table_partner){before, after,
-                               (x[wanted->row] - x[before]) / (x[after] - x[before])};
-}
-
-/* Hides the rows of the first side and finds the partners of the others. */
-static strut_status pair_sides(strut_table_rows *rows, int of, strut_arena *arena,
-                               strut_error *error) {
-  strut_table_groups sides;
-  size_t count = 0, all = rows->table->row_count;
-  strut_status status = strut_table_groups_find(rows, of, 2, "sides to compare", &sides, error);
-  if (status) return status;
-  if (sides.count < 2)
-    return strut_fail(error, STRUT_USAGE,
-                      "column '%.60s' has only the text '%.60s', so there is nothing to compare",
-                      rows->table->columns[of].name, sides.name[0]);
-  keyed *first = strut_arena_allocate(arena, all, sizeof *first);
-  rows->partner = strut_arena_allocate(arena, all, sizeof *rows->partner);
-  if (!first || !rows->partner) return strut_no_memory(error, "while drawing");
-  memcpy(rows->side, sides.name, sizeof rows->side);
-  for (size_t i = 0; i < all; i++) {
-    if (!strut_table_belongs(rows, of, rows->side[0], i)) continue;
-    first[count++] = (keyed){rows, i, STRUT_KEYS_OF_ROWS};
-    rows->shown[i] = false;
-  }
-  qsort(first, count, sizeof *first, compare_keys);
-  for (size_t i = 0; i < all; i++)
-    if (rows->shown[i])
-      rows->partner[i] = find_partner(first, count, &(keyed){rows, i, STRUT_KEYS_OF_ROWS});
-  return STRUT_OK;
-}
-
-bool strut_table_compares(const strut_table_rows *rows, int column) {
-  for (size_t i = 0; i < rows->value_count && rows->partner; i++)
-    if (rows->values[i] == column) return true;
-  return false;
-}
-
-double strut_table_number(const strut_table_rows *rows, int column, size_t row) {
-  const double *value = column >= 0 ? rows->table->columns[column].value : NULL;
-  if (!value) return (double)NAN;
-  if (!strut_table_compares(rows, column)) return value[row];
-  const strut_table_partner *partner = &rows->partner[row];
-  if (partner->row == SIZE_MAX) return (double)NAN;
-  double less = value[row] - value[partner->row];
-  if (partner->weight > 0) less -= partner->weight * (value[partner->next] - value[partner->row]);
-  return less;
-}
-
-bool strut_table_differs(const strut_table_rows *rows, int column, size_t row) {
-  const char *const *text = rows->table->columns[column].text;
-  size_t other = rows->partner[row].row;
-  return other == SIZE_MAX || strcmp(text[other], text[row]) != 0;
-}
-
-strut_status strut_table_rows_choose(strut_table_rows *rows, int only, const char *text,
-                                     int difference, strut_arena *arena, strut_error *error) {
-  size_t count = rows->table->row_count, shown = only == STRUT_NO_COLUMN;
-  rows->shown = strut_arena_allocate(arena, count + 1, 1);
-  if (!rows->shown) return strut_no_memory(error, "while drawing");
-  memset(rows->shown, true, count);
-  for (size_t i = 0; i < count; i++)
-    shown += rows->shown[i] = strut_table_belongs(rows, only, text, i);
-  if (!shown)
-    return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
-                      rows->table->columns[only].name);
-  return difference == STRUT_NO_COLUMN ? STRUT_OK : pair_sides(rows, difference, arena, error);
-}
-
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
 static const double BARS = 0.7,
                     WIDTH = 1.4; /* of a place; of lines of which some are dashed [pt] */
@@ -179,6 +24,7 @@ enum {
 
 /* A figure being filled in. Columns by number. */
 typedef struct maker {
+  const strut_plot *plot;
   const strut_study_figure *wanted;
   strut_table_marks marks;
   int x, y[STRUT_MOST_Y], y_count, panel;
@@ -195,6 +41,13 @@ typedef struct maker {
   strut_figure page;
   strut_error *error;
 } maker;
+
+/* COLUMN=TEXT, or a column alone. */
+static int find_column(const strut_table *table, const char *name, const char **text) {
+  size_t length = name ? strcspn(name, text ? "=" : "") : 0;
+  if (name && text) *text = name + length + 1;
+  return strut_table_column_of(table, name, length);
+}
 
 static bool is_map(const maker *self) { return self->wanted->kind == STRUT_FIGURE_MAP; }
 
@@ -225,18 +78,21 @@ static const char *group_text(maker *self, int column, const strut_table_groups 
   const strut_table_column *of = column_of(self, column);
   double value = of->value ? of->value[groups->row[i]] : (double)NAN;
   bool unit = isfinite(value) && (*of->unit || of->shown.name);
+  bool named = *of->name > ' '; /* else the texts say all */
   return strut_figure_text(
-      &self->page, "%s%s%s", of->name, *of->name ? between : "",
+      &self->page, "%s%s%s", named ? of->name : "", named ? between : "",
       unit ? strut_quantity_shown(value, DIGITS, *of->unit ? of->unit : "1", of->shown).text
            : groups->name[i]);
 }
 
-/* "velocity", or "velocity, b less a". */
+/* "velocity", or "velocity, b less a", or "velocity, friction 0.3 less 0.1". */
 static const char *name_of(maker *self, int column) {
   const strut_table_column *of = column_of(self, column);
   if (!of->value || !strut_table_compares(&self->rows, column)) return of->name;
-  return strut_figure_text(&self->page, "%s, %s less %s", of->name, self->rows.side[1],
-                           self->rows.side[0]);
+  const char *between = self->wanted->difference;
+  bool named = column_of(self, find_column(self->rows.table, between, NULL))->value;
+  return strut_figure_text(&self->page, "%s, %s%s%s less %s", of->name, named ? between : "",
+                           named ? " " : "", self->rows.side[1], self->rows.side[0]);
 }
 
 static bool is_in_panel(const maker *self, size_t panel, size_t row) {
@@ -295,18 +151,17 @@ static const char *curve_name(maker *self, size_t curve, int k) {
                            group_text(self, self->by, &self->curves, curve, " "));
 }
 
-/* A dot in the colour of its kind. */
+/* A dot in the colour of its kind, or a text alone. */
 static void add_kind(maker *self, strut_panel *panel, size_t row, const strut_point *at) {
-  const char *kind = column_of(self, self->mark)->text[row];
-  const strut_table_column *thing = column_of(self, self->thing);
-  if (!*kind) return;
-  strut_label *mark = strut_add_mark(
+  const strut_table_column *mark = column_of(self, self->mark), *of = column_of(self, self->thing);
+  const char *kind = mark ? mark->text[row] : "", *thing = of ? of->text[row] : "";
+  if (mark ? !*kind : !*thing) return;
+  strut_label *label = strut_add_mark(
       &self->page, panel, at->x, at->y,
-      strut_figure_text(&self->page, "%s%s%.60s", kind, thing && *thing->text[row] ? " " : "",
-                        thing ? thing->text[row] : ""));
-  mark->dot = true;
-  mark->colour = strut_palette_thing((size_t)index_of(&self->kinds, kind));
-  mark->angle = 0.25 * STRUT_PI;
+      strut_figure_text(&self->page, "%s%s%.60s", kind, *kind && *thing ? " " : "", thing));
+  label->dot = mark != NULL;
+  if (mark) label->colour = strut_palette_thing((size_t)index_of(&self->kinds, kind));
+  label->angle = (mark ? 0.25 : 1.25) * STRUT_PI;
 }
 
 static void add_row(maker *self, strut_panel *panel, strut_series *series, int y, size_t row,
@@ -315,7 +170,7 @@ static void add_row(maker *self, strut_panel *panel, strut_series *series, int y
   strut_point *point = strut_add_point(&self->page, series, x, value_of(self, y, row));
   point->low = value_of(self, self->low, row), point->high = value_of(self, self->high, row);
   point->unstable = stable && strcmp(stable->text[row], "no") == 0;
-  if (self->mark != STRUT_NO_COLUMN) add_kind(self, panel, row, point);
+  add_kind(self, panel, row, point);
 }
 
 /* True if a line ends between two rows. */
@@ -352,6 +207,7 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
     size_t curve = n / (size_t)self->y_count, k = n % (size_t)self->y_count;
     if (k == 0) count = rows_of(self, number, curve, row);
     if (k == 0 && !places) add_bands(self, row, count, panel);
+    if (!count && self->wanted->apart) continue;
     strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
     if (places) add_bars(self, panel, series, n, row, count);
     if (self->stable != STRUT_NO_COLUMN)
@@ -596,7 +452,7 @@ static strut_status prepare(maker *self) {
     if (groups[i].wanted)
       status = strut_table_groups_find(&self->rows, groups[i].column, STRUT_MOST_TABLE_GROUPS,
                                        groups[i].what, groups[i].groups, self->error);
-  if (!status && bars && self->wanted->log_x)
+  if (!status && bars && self->plot->x.logarithmic)
     status = strut_fail(self->error, STRUT_USAGE,
                         "column '%.60s' holds texts, which have no logarithmic axis",
                         column_of(self, self->x)->name);
@@ -614,7 +470,8 @@ static void add_panel(maker *self, size_t i) {
   strut_panel *panel = strut_add_panel(&self->page);
   panel->x = strut_axis_in(x->name, x->unit, x->shown);
   panel->y = strut_axis_in(name_y_axis(self), y->unit, y->shown);
-  panel->x.logarithmic = self->wanted->log_x, panel->y.logarithmic = self->wanted->log_y;
+  panel->lost = self->wanted->lost;
+  panel->room = panel->lost ? 0.06 : 0;
   if (value && value->value)
     panel->scale = (strut_colour_scale){.name = name_of(self, self->value),
                                         .unit = value->unit,
@@ -628,13 +485,6 @@ static void add_panel(maker *self, size_t i) {
   (is_map(self)                                ? add_map
    : self->wanted->kind == STRUT_FIGURE_POINTS ? add_points
                                                : add_curves)(self, i, panel);
-}
-
-/* COLUMN=TEXT, or a column alone. */
-static int find_column(const strut_table *table, const char *name, const char **text) {
-  size_t length = name ? strcspn(name, text ? "=" : "") : 0;
-  if (name && text) *text = name + length + 1;
-  return strut_table_column_of(table, name, length);
 }
 
 /* Finds the columns by their names. */
@@ -670,11 +520,13 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
                               const strut_table *table, strut_table_marks marks,
                               strut_error *error) {
   const char *text = NULL;
-  maker m = {.wanted = figure, .marks = marks, .error = error};
-  m.page = (strut_figure){.least_width = is_map(&m) ? MAP_WIDTH : CURVES_WIDTH,
+  maker m = {.plot = plot, .wanted = figure, .marks = marks, .error = error};
+  m.page = (strut_figure){.least_width = figure->apart ? 0
+                                         : is_map(&m)  ? MAP_WIDTH
+                                                       : CURVES_WIDTH,
                           .aspect = is_map(&m) ? 0.8 : 0.62,
-                          .shared_axes = true,
-                          .one_legend = true};
+                          .shared_axes = !figure->apart,
+                          .one_legend = !figure->apart};
   find_columns(&m, table);
   assert(m.y_count > 0);
   int only = find_column(table, figure->only, &text);
@@ -684,7 +536,7 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
     m.rows.shown[i] = m.rows.shown[i] && marks.shown[i];
   if (!status) status = prepare(&m);
   for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
-  add_keys(&m);
+  if (!status) add_keys(&m);
   if (!status) status = strut_figure_draw(plot, &m.page, error);
   strut_arena_free(&m.page.arena);
   return status;

@@ -2,12 +2,13 @@
 /* Figures of models beside each other: of a comparison, and of what models and settings are worth. */
 #include "engine/study/compare/compare.h"
 
+#include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
 
 #include "engine/output/draw/figure.h"
-#include "engine/output/figures/work_precision.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
@@ -155,107 +156,134 @@ strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *r
 
 static const double BEYOND = 10; /* an error of which nothing can be said but that it is one */
 
-/* The points of a panel being gathered. */
-typedef struct gathered {
+/* Its columns: texts, then numbers. */
+enum { PANEL, GROUP, STEP, COST, ERROR, LOW, HIGH, DRAWN };
+
+typedef struct diagram {
   const strut_tradeoff *tradeoff;
-  strut_saving *savings;
-  size_t count;
-  strut_figure *figure;
-} gathered;
+  const char **text[COST];
+  double *number[DRAWN];
+  strut_table table;
+} diagram;
 
-/* A point of the diagram, and one more at the upper edge where some of its runs diverged. */
-static void add_saving(gathered *self, const strut_tradeoff_row *row, bool total,
-                       const char *group) {
+/* Room for a point and a lost one of each row in both panels. False: out of memory. */
+static bool begin_diagram(diagram *self, const char *cost, const char *error) {
+  const char *const names[] = {" ", "", "step", cost, error, "low", "high"};
+  strut_arena *arena = &self->table.arena;
+  size_t room = 4 * self->tradeoff->row_count + 1;
+  bool fine =
+      (self->table.columns = strut_arena_allocate(arena, DRAWN, sizeof(strut_table_column)));
+  for (int i = 0; i < DRAWN && fine; i++) {
+    strut_table_column *column = &self->table.columns[i];
+    *column = (strut_table_column){.name = names[i], .unit = ""};
+    if (i < COST)
+      column->text = self->text[i] = strut_arena_allocate(arena, room, sizeof(char *));
+    else
+      column->value = self->number[i] = strut_arena_allocate(arena, room, sizeof(double));
+    fine = column->text || column->value;
+  }
+  self->table.column_count = DRAWN;
+  return fine;
+}
+
+static void add_point(diagram *self, const char *const text[COST], double cost,
+                      const double range[3]) {
+  size_t row = self->table.row_count++;
+  for (int i = 0; i < COST; i++) self->text[i][row] = text[i];
+  self->number[COST][row] = cost;
+  for (int i = 0; i < 3; i++) self->number[ERROR + i][row] = range[i];
+}
+
+/* A row of the table, and one more at the upper edge where some of its runs diverged. */
+static void add_setting(diagram *self, const char *const text[COST], const strut_tradeoff_row *row,
+                        bool total) {
   const strut_spread *spread = total ? &row->total_spread : &row->error_spread;
-  const double *errors = total ? row->total : row->error;
-  char text[STRUT_TRADEOFF_TEXT];
-  strut_saving lost = {.group = group,
-                       .cost = row->evaluations,
-                       .error = HUGE_VAL,
-                       .low = (double)NAN,
-                       .high = (double)NAN};
-  strut_saving saving = lost;
+  double range[] = {spread->median, (double)NAN, (double)NAN};
+  const double lost[] = {HUGE_VAL, (double)NAN, (double)NAN};
   bool gone = !(spread->median <= BEYOND);
-  if (!total && row->front)
-    saving.label = strut_figure_text(self->figure, "%s", strut_tradeoff_step_text(row, text));
-  if (!gone) saving.error = spread->median;
-  if (!gone && self->tradeoff->point_count > 1) {
-    saving.low = saving.high = spread->median;
-    for (size_t k = 0; k < self->tradeoff->point_count && !(spread->worst <= BEYOND); k++)
-      if (errors[k] <= BEYOND) saving.high = fmax(saving.high, errors[k]);
-    if (spread->worst <= BEYOND) saving.high = spread->worst;
+  if (self->tradeoff->point_count > 1) {
+    range[1] = range[2] = spread->median;
+    for (size_t k = 0; k < spread->count; k++)
+      if (spread->values[k] <= BEYOND) range[2] = fmax(range[2], spread->values[k]);
   }
-  self->savings[self->count++] = saving;
-  if (row->diverged && !gone) self->savings[self->count++] = lost;
+  if (!gone) add_point(self, text, row->evaluations, range);
+  if (gone || row->diverged)
+    add_point(self, (const char *[]){text[PANEL], text[GROUP], ""}, row->evaluations, lost);
 }
 
-/* Step errors of the unchanged model, a group for each method. */
-static void add_methods(gathered *self) {
-  const char *name = "";
-  int last = -1;
-  for (size_t i = 0; i < self->tradeoff->row_count; i++) {
-    const strut_tradeoff_row *row = &self->tradeoff->rows[i];
-    char text[STRUT_TRADEOFF_TEXT];
-    if (row->variant != 0) continue;
-    if (row->group != last)
-      name = strut_figure_text(self->figure, "%s", strut_tradeoff_group_text(row, text));
-    last = row->group;
-    add_saving(self, row, false, name);
-  }
-}
-
-static bool on_total_front(const strut_tradeoff *tradeoff, const strut_tradeoff_row *row) {
-  if (!(row->total_spread.worst <= BEYOND)) return false;
-  for (size_t i = 0; i < tradeoff->row_count; i++) {
-    const strut_tradeoff_row *other = &tradeoff->rows[i];
-    if (other->variant == row->variant && other->evaluations <= row->evaluations &&
-        other->total_spread.worst < row->total_spread.worst)
-      return false;
-  }
-  return true;
-}
-
-/* Total errors, a group for each model with those of its rows that no other of it beats, by cost. */
-static void add_models(gathered *self) {
+/* The step of a row on the front; with its group where another one on the front has the same. */
+static const char *step_of(diagram *self, const strut_tradeoff_row *row, const char *group) {
   const strut_tradeoff *tradeoff = self->tradeoff;
-  for (size_t v = 0; v < tradeoff->variant_count; v++) {
-    const strut_tradeoff_row *next = NULL;
-    for (double done = 0; tradeoff->variants[v].run; done = next->evaluations) {
-      next = NULL;
-      for (size_t i = 0; i < tradeoff->row_count; i++) {
-        const strut_tradeoff_row *row = &tradeoff->rows[i];
-        if (row->variant == (int)v && row->evaluations > done &&
-            (!next || row->evaluations < next->evaluations) && on_total_front(tradeoff, row))
-          next = row;
-      }
-      if (!next) break;
-      add_saving(self, next, true, tradeoff->variants[v].name);
-    }
+  char own[STRUT_TRADEOFF_TEXT], other[STRUT_TRADEOFF_TEXT];
+  bool alike = false;
+  if (!row->front) return "";
+  strut_tradeoff_step_text(row, own);
+  for (const strut_tradeoff_row *r = tradeoff->rows; r < tradeoff->rows + tradeoff->row_count; r++)
+    alike = alike || (r != row && r->front && r->variant == row->variant &&
+                      strcmp(strut_tradeoff_step_text(r, other), own) == 0);
+  const char *text = strut_arena_format(&self->table.arena, alike ? "%s, %s" : "%s", own, group);
+  return text ? text : "";
+}
+
+/* Step errors of the unchanged model, a group for each method; total errors on the fronts of models, by cost. */
+static bool fill_diagram(diagram *self) {
+  const strut_tradeoff *tradeoff = self->tradeoff;
+  size_t count = tradeoff->row_count, models = 0;
+  size_t *order = strut_arena_allocate(&self->table.arena, count + 1, sizeof *order);
+  double *cost = strut_arena_allocate(&self->table.arena, count + 1, sizeof *cost);
+  char text[STRUT_TRADEOFF_TEXT];
+  if (!order || !cost) return false;
+  for (size_t v = 0; v < tradeoff->variant_count; v++) models += tradeoff->variants[v].run;
+  for (size_t i = 0; i < count; i++) {
+    const strut_tradeoff_row *row = &tradeoff->rows[i];
+    const char *group =
+        strut_arena_format(&self->table.arena, "%s", strut_tradeoff_group_text(row, text));
+    cost[i] = row->evaluations;
+    if (!group) return false;
+    if (row->variant == 0)
+      add_setting(
+          self,
+          (const char *[]){"Methods: step error of the unchanged model (beyond 1000 %: diverged)",
+                           group, step_of(self, row, group)},
+          row, false);
   }
+  gsl_sort_index(order, cost, 1, count);
+  for (size_t v = 0; v < tradeoff->variant_count && models > 1; v++)
+    for (size_t i = 0; i < count; i++) {
+      const strut_tradeoff_row *row = &tradeoff->rows[order[i]];
+      if (tradeoff->variants[v].run && row->variant == (int)v && row->total_front)
+        add_setting(self,
+                    (const char *[]){"Models: total error, cheapest method for each",
+                                     tradeoff->variants[v].name, ""},
+                    row, true);
+    }
+  return true;
 }
 
 strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *tradeoff,
                                    strut_error *error) {
-  static const char *const titles[] = {"Methods: unchanged model (beyond 1000 %: diverged)",
-                                       "Models: cheapest method for each error"};
-  strut_figure figure = {0};
-  size_t models = 0;
+  diagram d = {.tradeoff = tradeoff};
   char text[3 * STRUT_TRADEOFF_TEXT];
-  const char *cost = strut_figure_text(&figure, "cost in force evaluations, %s = 1",
-                                       strut_tradeoff_base_text(tradeoff, text));
-  for (size_t i = 0; i < tradeoff->variant_count; i++) models += tradeoff->variants[i].run ? 1 : 0;
-  for (int i = 0; i < (models > 1 ? 2 : 1); i++) {
-    gathered g = {.figure = &figure, .tradeoff = tradeoff};
-    const char *measure = strut_figure_text(&figure, "%s error of the %s%s", i ? "total" : "step",
-                                            strut_tradeoff_measure_text(tradeoff->measure),
-                                            tradeoff->point_count > 1 ? ", median to worst" : "");
-    g.savings = strut_arena_allocate(&figure.arena, 2 * tradeoff->row_count + 1, sizeof *g.savings);
-    figure.failed |= !g.savings;
-    if (figure.failed) break;
-    (i ? add_models : add_methods)(&g);
-    strut_add_work_precision(&figure, strut_axis_of(cost, ""), strut_axis_of(measure, ""),
-                             g.savings, g.count)
-        ->title = titles[i];
-  }
-  return strut_figure_draw(plot, &figure, error);
+  const char *cost = strut_arena_format(&d.table.arena, "cost in force evaluations, %s = 1",
+                                        strut_tradeoff_base_text(tradeoff, text));
+  const char *measure = strut_arena_format(&d.table.arena, "error of the %s%s",
+                                           strut_tradeoff_measure_text(tradeoff->measure),
+                                           tradeoff->point_count > 1 ? ": median to worst" : "");
+  const strut_study_figure figure = {.x = cost,
+                                     .y = measure,
+                                     .series = "",
+                                     .panels = " ",
+                                     .thing = "step",
+                                     .low = "low",
+                                     .high = "high",
+                                     .lost = "at the upper edge: diverged",
+                                     .apart = true};
+  strut_plot scaled = *plot;
+  scaled.x.logarithmic = scaled.y.logarithmic = true;
+  bool fine = cost && measure && begin_diagram(&d, cost, measure) && fill_diagram(&d);
+  strut_status status =
+      fine ? strut_table_draw(&scaled, &figure, &d.table, (strut_table_marks){0}, error)
+           : strut_no_memory(error, "while drawing");
+  strut_arena_free(&d.table.arena);
+  return status;
 }

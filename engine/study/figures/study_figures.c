@@ -11,8 +11,6 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/sweep/sweep.h"
 
-static const double PAGE = 510.24; /* 180 mm [pt] */
-
 void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table) {
   for (size_t k = 0; k < strut_grid_columns(plan->study); k++) {
     const strut_study_column *of = strut_grid_column(plan->study, k, NULL);
@@ -21,7 +19,7 @@ void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table) {
 }
 
 static strut_axis_choice axis_of(const char *label, const double limits[2]) {
-  return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
+  return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1], false};
 }
 
 static strut_plot plot_of(const strut_study_figure *figure, const char *path) {
@@ -136,7 +134,7 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
   else if (strut_figure_of_search(figure))
     status = draw_search(plan, figure, file, table, searched, error);
   else if (strut_figure_of_runs(figure))
-    status = strut_study_pictures(plan, directory, figure, PAGE, error);
+    status = strut_study_pictures(plan, directory, figure, error);
   else
     status = strut_table_draw(&plot, figure, table,
                               (strut_table_marks){.spread = plan->study->refine.depth > 0}, error);
@@ -191,7 +189,7 @@ strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study 
                                        .label_count = one ? 2 : 0,
                                        .labels = labels};
     own.columns[of].name = figure.panels;
-    limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2};
+    limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2, false};
     status = strut_table_draw(&limited, &figure, &own, (strut_table_marks){.shown = shown}, error);
   }
   strut_arena_free(&own.arena);
@@ -214,8 +212,8 @@ static strut_status set_up(const strut_sweep_plan *plan, const strut_search_poin
 
 strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                         const strut_study_figure *figure, const char *path,
-                                        const strut_search_point *best, double width,
-                                        const strut_flag *interrupt, strut_error *error) {
+                                        const strut_search_point *best, const strut_flag *interrupt,
+                                        strut_error *error) {
   strut_setup setups[2];
   strut_compare result = {0};
   const strut_compare_input inputs[] = {{.label = "start", .setup = &setups[0]},
@@ -228,8 +226,8 @@ strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                            .no_motion = plan->study->compute != STRUT_COMPUTE_RUN,
                                            .no_states = true,
                                            .interrupt = interrupt};
-    const strut_plot plot = {
-        .path = path, .title = figure->title ? figure->title : plan->study->name, .width = width};
+    const strut_plot plot = {.path = path,
+                             .title = figure->title ? figure->title : plan->study->name};
     status = strut_compare_make(inputs, 2, &options, &result, error);
     if (!status) status = strut_compare_figure(&plot, &result, 0, result.count, error);
     strut_compare_free(&result);

@@ -94,5 +94,5 @@ void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table);
 /** Draws `best` beside the start of its search into the file `path`. */
 strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                         const strut_study_figure *figure, const char *path,
-                                        const strut_search_point *best, double width,
-                                        const strut_flag *interrupt, strut_error *error);
+                                        const strut_search_point *best, const strut_flag *interrupt,
+                                        strut_error *error);

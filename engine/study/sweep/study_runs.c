@@ -257,7 +257,6 @@ typedef struct pictures {
   const strut_sweep_plan *plan;
   const char *directory;
   const strut_study_figure *figure;
-  double width;
   size_t axis; /* along which two points share a picture; axis_count: none */
   bool drawn;  /* some are */
 } pictures;
@@ -269,7 +268,7 @@ static strut_status draw(const pictures *self, opened_run *opened, const opened_
   const strut_run_figure picture = {
       .experiment = &opened->setup.experiment,
       .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
-      .plot = {.path = file_of(self->plan, self->directory, figure, opened), .width = self->width},
+      .plot = {.path = file_of(self->plan, self->directory, figure, opened)},
       .scale = {figure->scale[0], figure->scale[1]},
       .time_count = figure->time_count,
       .times = figure->times,
@@ -294,7 +293,10 @@ static strut_status draw_point(pictures *self, int64_t point, strut_error *error
     status = open_run(plan, self->directory, self->figure, with, &other, &beside, error);
     const char *name = NULL;
     for (size_t i = 0; i < plan->axis_columns && !status; i++)
-      if (strcmp(plan->columns[i].name, self->figure->difference) == 0) name = other.texts[i];
+      if (strcmp(plan->columns[i].name, self->figure->difference) == 0)
+        name = plan->columns[i].word ? other.texts[i]
+                                     : strut_arena_format(&other.arena, "%s %s",
+                                                          plan->columns[i].name, other.texts[i]);
     if (!status) status = draw(self, &o, beside ? &other : NULL, name, error);
     close_run(&other);
   } else if (!status && there) {
@@ -306,9 +308,8 @@ static strut_status draw_point(pictures *self, int64_t point, strut_error *error
 }
 
 strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
-                                  const strut_study_figure *figure, double width,
-                                  strut_error *error) {
-  pictures p = {plan, directory, figure, width, find_axis(plan, figure), false};
+                                  const strut_study_figure *figure, strut_error *error) {
+  pictures p = {plan, directory, figure, find_axis(plan, figure), false};
   strut_status status = STRUT_OK;
   for (int64_t point = 0; point < plan->points && !status; point++)
     status = draw_point(&p, point, error);

@@ -174,5 +174,4 @@ STRUT_API strut_status strut_study_motion(const strut_sweep_plan *plan, const ch
  * them. As strut_study_motion.
  */
 STRUT_API strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
-                                            const strut_study_figure *figure, double width,
-                                            strut_error *error);
+                                            const strut_study_figure *figure, strut_error *error);

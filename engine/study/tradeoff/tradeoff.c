@@ -76,20 +76,33 @@ static void evaluate_costs(tradeoff_study *study) {
   for (size_t i = 0; i < tradeoff->row_count; i++) evaluate_cost(study, &tradeoff->rows[i], base);
 }
 
-static void find_fronts(strut_tradeoff *tradeoff) {
-  for (size_t i = 0; i < tradeoff->row_count; i++) {
-    strut_tradeoff_row *row = &tradeoff->rows[i];
-    row->front = isfinite(row->error_spread.worst);
-    for (size_t k = 0; k < tradeoff->row_count && row->front; k++) {
-      const strut_tradeoff_row *tradeoff_row = &tradeoff->rows[k];
-      if (tradeoff_row->variant != row->variant || !isfinite(tradeoff_row->error_spread.worst))
-        continue;
-      bool no_worse = tradeoff_row->evaluations <= row->evaluations &&
-                      tradeoff_row->error_spread.worst <= row->error_spread.worst;
-      bool better = tradeoff_row->evaluations < row->evaluations ||
-                    tradeoff_row->error_spread.worst < row->error_spread.worst;
-      row->front = !(no_worse && better);
+void strut_pareto_front(const double (*points)[2], size_t count, bool *front) {
+  for (size_t i = 0; i < count; i++) {
+    const double *own = points[i];
+    front[i] = isfinite(own[0]) && isfinite(own[1]);
+    for (size_t k = 0; k < count && front[i]; k++) {
+      const double *other = points[k];
+      bool no_worse = other[0] <= own[0] && other[1] <= own[1];
+      front[i] = !(no_worse && (other[0] < own[0] || other[1] < own[1]));
     }
+  }
+}
+
+/* The fronts of each variant. */
+static void find_fronts(tradeoff_study *study) {
+  strut_tradeoff *tradeoff = study->result;
+  size_t count = tradeoff->row_count;
+  double(*points)[2] = strut_tradeoff_allocate(study, count + 1, sizeof *points);
+  bool *front = strut_tradeoff_allocate(study, count + 1, sizeof *front);
+  for (size_t k = 0; k < 2 * tradeoff->variant_count && points && front; k++) {
+    for (size_t i = 0; i < count; i++) {
+      const strut_tradeoff_row *row = &tradeoff->rows[i];
+      points[i][0] = row->variant == (int)(k / 2) ? row->evaluations : (double)NAN;
+      points[i][1] = k % 2 ? row->total_spread.worst : row->error_spread.worst;
+    }
+    strut_pareto_front((const double(*)[2])points, count, front);
+    for (size_t i = 0; i < count; i++)
+      if (front[i]) *(k % 2 ? &tradeoff->rows[i].total_front : &tradeoff->rows[i].front) = true;
   }
 }
 
@@ -109,7 +122,7 @@ static void judge(tradeoff_study *study) {
   for (size_t i = 0; i < tradeoff->row_count; i++)
     strut_tradeoff_judge_row(study, &tradeoff->rows[i]);
   evaluate_costs(study);
-  find_fronts(tradeoff);
+  find_fronts(study);
 }
 
 /* The smallest worst error of a row of the unchanged model, not counting what a floor hides; 1 where there is none. */

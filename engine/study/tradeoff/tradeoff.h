@@ -103,6 +103,7 @@ typedef struct strut_tradeoff_row {
   double cpu;         /* CPU time over that of the base; NAN: not measured */
   double seconds;     /* CPU time of a run, median over the points [s]; NAN: not measured */
   bool front; /* Pareto-optimal among the rows of its variant, by `evaluations` and worst error */
+  bool total_front; /* likewise by worst total error */
 } strut_tradeoff_row;
 
 /** A study; release with strut_tradeoff_free. Names, setups and methods outlive it. */
@@ -129,6 +130,9 @@ typedef struct strut_tradeoff {
   strut_tradeoff_row *rows;
   strut_arena arena;
 } strut_tradeoff;
+
+/** Flags (count) the points that no other one is better than in both; one that is not finite never is. */
+STRUT_API void strut_pareto_front(const double (*points)[2], size_t count, bool *front);
 
 /**
  * Runs everything. `setups` are (count) operating points of one model, alike but for their

@@ -349,6 +349,23 @@ const strut_option strut_axis_options[] = {
 static const double POINTS = 72.0 / 0.0254;                                      /* in a metre */
 static const double PAGE = 0.18, COLUMN = 0.088, NARROWEST = 0.04, WIDEST = 1.0; /* [m] */
 
+/* What replaces axis 0, x, or 1, y; limits of a logarithmic axis are above 0. */
+static strut_status read_axis(const strut_arguments *arguments, int d, strut_axis_choice *axis) {
+  const char *text = d ? arguments->y_limits : arguments->x_limits;
+  double range[2];
+  *axis = (strut_axis_choice){.label = d ? arguments->y_label : arguments->x_label};
+  axis->logarithmic = arguments->log.text && arguments->log.index != 1 - d; /* x, y or both */
+  if (!text) return STRUT_OK;
+  axis->limited = strut_quantities_read(text, STRUT_DIM_NONE, range, 2) == 2 &&
+                  range[0] < range[1] && (!axis->logarithmic || range[0] > 0);
+  axis->low = range[0], axis->high = range[1];
+  return axis->limited ? STRUT_OK
+                       : strut_usage_error(arguments,
+                                           "--%c-limits expects two ascending numbers%s, in the "
+                                           "base unit of the axis, such as 1,10; not '%s'",
+                                           'x' + d, axis->logarithmic ? " above 0" : "", text);
+}
+
 strut_status strut_plot_settings_read(const strut_arguments *arguments, double usual,
                                       strut_plot *plot) {
   const char *text = arguments->width;
@@ -363,31 +380,8 @@ strut_status strut_plot_settings_read(const strut_arguments *arguments, double u
   if (!(width >= NARROWEST && width <= WIDEST))
     return strut_usage_error(arguments, "--width %s: expected a width between 40 mm and 1 m", text);
   plot->width = text || !(usual > 0) ? width * POINTS : usual;
-  return strut_axes_read(arguments, false, false, &plot->x, &plot->y);
-}
-
-static strut_status read_limits(const strut_arguments *arguments, char letter, bool logarithmic,
-                                strut_axis_choice *axis) {
-  const char *text = letter == 'x' ? arguments->x_limits : arguments->y_limits;
-  double range[2];
-  if (!text) return STRUT_OK;
-  axis->limited = strut_quantities_read(text, STRUT_DIM_NONE, range, 2) == 2 &&
-                  range[0] < range[1] && (!logarithmic || range[0] > 0);
-  if (!axis->limited)
-    return strut_usage_error(arguments,
-                             "--%c-limits expects two ascending numbers%s, such as 1,10; not '%s'",
-                             letter, logarithmic ? " above 0" : "", text);
-  axis->low = range[0];
-  axis->high = range[1];
-  return STRUT_OK;
-}
-
-strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool log_y,
-                             strut_axis_choice *choice, strut_axis_choice *other_choice) {
-  *choice = (strut_axis_choice){.label = arguments->x_label};
-  *other_choice = (strut_axis_choice){.label = arguments->y_label};
-  strut_status status = read_limits(arguments, 'x', log_x, choice);
-  return status ? status : read_limits(arguments, 'y', log_y, other_choice);
+  strut_status status = read_axis(arguments, 0, &plot->x);
+  return status ? status : read_axis(arguments, 1, &plot->y);
 }
 
 /* ---- of runs ---- */
@@ -509,7 +503,9 @@ strut_status strut_table_parse(const strut_listener *listener, const char *path,
   }
   strut_diagnostics_free(&diagnostics);
   strut_arena_free(&csv.arena);
-  if (status != STRUT_OK) strut_arena_free(&table->arena);
+  if (status == STRUT_OK) return STRUT_OK;
+  strut_arena_free(&table->arena);
+  *table = (strut_table){0};
   return status;
 }
 

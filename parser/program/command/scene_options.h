@@ -89,9 +89,6 @@ extern const strut_option strut_width_options[], strut_plot_setting_options[],
  */
 strut_status strut_plot_settings_read(const strut_arguments *arguments, double usual,
                                       strut_plot *plot);
-/** Reads labels and limits; limits of a logarithmic axis must be above 0. STRUT_USAGE as above. */
-strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool log_y,
-                             strut_axis_choice *choice, strut_axis_choice *other_choice);
 
 enum { STRUT_MOST_TIMES = 100 };
 

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/output/figures/run_figure.h"
@@ -95,6 +97,17 @@ static void judge_column(const void *context, size_t i, const strut_figure_key *
     *self->unit = unit;
 }
 
+/* Says what is wrong with the key, which it returns. */
+__attribute__((format(printf, 3, 4))) static const char *wrong(char fault[STRUT_MESSAGE_MOST],
+                                                               const char *key, const char *format,
+                                                               ...) {
+  va_list rest;
+  va_start(rest, format);
+  vsnprintf(fault, STRUT_MESSAGE_MOST, format, rest);
+  va_end(rest);
+  return key;
+}
+
 /* How many texts the figure's rows have in a column, of which `nodes` are those of "node"; 0: not known. */
 static size_t count_texts(const source *self, const char *name, size_t nodes) {
   const char *only = self->figure->only ? self->figure->only : "=";
@@ -118,19 +131,15 @@ static const char *judge_counts(const source *self, size_t nodes, char fault[STR
   if (figure->difference && curves && figure->series &&
       strcmp(figure->series, figure->difference) == 0)
     curves = 1;
-  if (sides && sides != 2) {
-    snprintf(fault, STRUT_MESSAGE_MOST, "it needs two values to compare; '%.60s' has %zu",
-             figure->difference, sides);
-    return "difference";
-  }
+  if (sides && sides != 2)
+    return wrong(fault, "difference", "it needs two values to compare; '%.60s' has %zu",
+                 figure->difference, sides);
   if (!figure->label_count || !curves || figure->label_count == curves * ys) return NULL;
   if (figure->series && ys == 1)
-    snprintf(fault, STRUT_MESSAGE_MOST, "%zu labels for the %zu values of '%.60s'",
-             figure->label_count, curves, figure->series);
-  else
-    snprintf(fault, STRUT_MESSAGE_MOST, "%zu labels for %zu curve%s", figure->label_count,
-             curves * ys, curves * ys == 1 ? "" : "s");
-  return "labels";
+    return wrong(fault, "labels", "%zu labels for the %zu values of '%.60s'", figure->label_count,
+                 curves, figure->series);
+  return wrong(fault, "labels", "%zu labels for %zu curve%s", figure->label_count, curves * ys,
+               curves * ys == 1 ? "" : "s");
 }
 
 /* The key of a figure of runs that has a fault in a run of this scene. */
@@ -148,27 +157,21 @@ static const char *judge_run(const source *self, const strut_setup *setup,
       figure->only && strncmp(figure->only, "node=", 5) == 0 ? figure->only + 5 : NULL;
   bool late = figure->from > span.duration;
   strut_error error = {0};
-  if (!(setup->experiment.channels & STRUT_CHANNEL_POSITION)) {
-    snprintf(fault, STRUT_MESSAGE_MOST,
-             "the runs record no positions: expected 'position' in 'output: {channels: [...]}'");
-    return "kind";
-  }
-  if (node && strut_thing_find(scene, STRUT_THING_NODE, node) < 0) {
-    snprintf(
-        fault, STRUT_MESSAGE_MOST, "the model has no node '%.60s'%s", node,
+  if (!(setup->experiment.channels & STRUT_CHANNEL_POSITION))
+    return wrong(
+        fault, "kind",
+        "the runs record no positions: expected 'position' in 'output: {channels: [...]}'");
+  if (node && strut_thing_find(scene, STRUT_THING_NODE, node) < 0)
+    return wrong(
+        fault, "only", "the model has no node '%.60s'%s", node,
         strut_near_to(node, strut_row_name, STRUT_NAMED(scene->nodes, scene->node_count)).text);
-    return "only";
-  }
-  if (late || figure->to < span.record_start) {
-    snprintf(fault, STRUT_MESSAGE_MOST, "nothing is recorded there: the record goes from %s to %s",
-             strut_quantity_of(span.record_start, 6, "s").text,
-             strut_quantity_of(span.duration, 6, "s").text);
-    return late ? "from" : "to";
-  }
-  if (figure->kind != STRUT_FIGURE_MOTION && strut_run_figure_check(&picture, scene, &error)) {
-    snprintf(fault, STRUT_MESSAGE_MOST, "%s", error.message);
-    return figure->time_count ? "times" : "kind";
-  }
+  if (late || figure->to < span.record_start)
+    return wrong(fault, late ? "from" : "to",
+                 "nothing is recorded there: the record goes from %s to %s",
+                 strut_quantity_of(span.record_start, 6, "s").text,
+                 strut_quantity_of(span.duration, 6, "s").text);
+  if (figure->kind != STRUT_FIGURE_MOTION && strut_run_figure_check(&picture, scene, &error))
+    return wrong(fault, figure->time_count ? "times" : "kind", "%s", error.message);
   return judge_counts(self, scene->node_count, fault);
 }
 
@@ -199,13 +202,10 @@ static const char *check_figure(const strut_sweep_study *study, const strut_stud
                     &unit};
   const strut_figure_columns columns = {s.runs ? "the motion" : "the table", column_name,
                                         judge_column, &s};
-  const bool no_search = strut_figure_of_search(figure) && !plan->study->search;
-  if (no_search || (s.runs && !plan->study->trajectories)) {
-    snprintf(fault, STRUT_MESSAGE_MOST, "%s",
-             no_search ? "it is of a search, which the study has not"
-                       : "it needs recorded runs: add 'trajectories: yes' to the study");
-    return "kind";
-  }
+  if (strut_figure_of_search(figure) && !plan->study->search)
+    return wrong(fault, "kind", "it is of a search, which the study has not");
+  if (s.runs && !plan->study->trajectories)
+    return wrong(fault, "kind", "it needs recorded runs: add 'trajectories: yes' to the study");
   const strut_figure_key *key = strut_figure_fault(figure, &columns, fault);
   if (key) return key->key;
   return s.runs                           ? judge_runs(&s, study->file.variants, fault)
@@ -290,7 +290,6 @@ strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *pa
 
 static const char branches_name[] = "branches.csv";
 static const char partial_branches_name[] = "branches-partial.csv";
-static const double PAGE = 510.24; /* 180 mm [pt] */
 
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error) {
   const strut_follow_points how = {strut_study_setup_at, &study->file};
@@ -326,8 +325,7 @@ static strut_status draw_branches(const strut_study_job *job, strut_error *error
   const char *directory = job->arguments->output;
   strut_table table = {0};
   const char *from = strut_arena_format(&plan->arena, "%s/%s", directory, branches_name);
-  const strut_plot plot = {.path = strut_arena_format(&plan->arena, "%s/branches.svg", directory),
-                           .width = PAGE};
+  const strut_plot plot = {.path = strut_arena_format(&plan->arena, "%s/branches.svg", directory)};
   if (!from || !plot.path) return strut_no_memory(error, "");
   strut_status status = strut_table_read(job->arguments->listener, from, &table);
   if (!status) {

@@ -14,7 +14,6 @@
 #include "parser/program/study/sweep.h"
 
 static const char table_name[] = "table.csv";
-static const double PAGE = 510.24; /* 180 mm [pt] */
 
 /* What was found, and its best point of all; NULL: none. */
 typedef struct searched {
@@ -139,9 +138,8 @@ static strut_status draw_winner(const strut_study_job *job, const strut_search_p
     if (figure->kind != STRUT_FIGURE_WINNER) continue;
     const char *path =
         strut_arena_format(&plan->arena, "%s/%s.svg", job->arguments->output, figure->name);
-    status =
-        path ? strut_search_winner_figure(plan, figure, path, best, PAGE, job->interrupt, &error)
-             : STRUT_NO_MEMORY;
+    status = path ? strut_search_winner_figure(plan, figure, path, best, job->interrupt, &error)
+                  : STRUT_NO_MEMORY;
   }
   return strut_tell_failure(job->arguments->listener, status, &error);
 }
