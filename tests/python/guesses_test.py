@@ -212,9 +212,15 @@ class Guesses(unittest.TestCase):
         strut.compare(scene, scene(friction=0.2), no_motion=True, plot=study.with_name("two.svg"), title="Two of them")
         self.assertGreater(study.with_name("two.svg").stat().st_size, 10000)
         self.assertRaisesRegex(ValueError, "no other svg; options of the figure", crawlers.svg, width="column")
+        self.assertRaisesRegex(AttributeError, r"^svg\(\) is its figure", lambda: crawlers.plot)
         self.assertRaisesRegex(TypeError, "did you mean 'accuracy'", strut.compare, scene, acuracy=1)
         self.assertRaisesRegex(ValueError, "accuracy.*'1 m'", strut.compare, scene, accuracy="1 m")
         self.assertRaises(strut.MissingFileError, strut.tradeoff, "none.yaml")
+        self.assertRaisesRegex(ValueError, "^unknown picture format 'x.gif'", strut.compare, scene, plot="x.gif")
+        bare = strut.loads("{strut: 1, nodes: {a: {position: [0, 0], mass: 1}}}", name="mine.yaml")
+        with self.assertRaisesRegex(strut.SceneError, "^mine.yaml:2:1: ") as caught:
+            strut.tradeoff(bare)
+        self.assertNotIn("strut-", caught.exception.report)  # the folder of the call
         self.assertRaisesRegex(AttributeError, "did you mean 'load'", lambda: strut.laod)
         self.assertRaisesRegex(AttributeError, "strut.load", lambda: strut.Model)
 

@@ -361,7 +361,8 @@ strut_status strut_plot_settings_read(const strut_arguments *arguments, double u
     if (status) return status;
   }
   if (!(width >= NARROWEST && width <= WIDEST))
-    return strut_usage_error(arguments, "--width %s: expected a width between 40 mm and 1 m", text);
+    return strut_usage_error(
+        arguments, "--width %s: expected a width between 40 mm and 1 m, such as 88mm", text);
   plot->width = text || !(usual > 0) ? width * POINTS : usual;
   return strut_axes_read(arguments, false, false, &plot->x, &plot->y);
 }
