@@ -257,7 +257,8 @@ static strut_status make_plain(strut_experiment *experiment, bool recorded, stru
   if (!(experiment->step > 0.0))
     return strut_fail(error, STRUT_USAGE,
                       "the scene leaves its step to be chosen: a simulation needs the option "
-                      "'step', such as 0.1 ms");
+                      "'step', such as 0.1 ms, and with dry friction 'integrator', such as "
+                      "rk4-events");
   experiment->accuracy = 0.0;
   experiment->steady.wanted = false;
   if (recorded) return STRUT_OK;
