@@ -173,6 +173,10 @@ strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const strut_scen
   return &self->sink;
 }
 
+void strut_trajectory_cut(strut_trajectory *trajectory, size_t frames) {
+  if (trajectory->recorded > frames) trajectory->frames = trajectory->recorded = frames;
+}
+
 void strut_trajectory_sink_free(strut_sink *sink) {
   if (!sink) return;
   keeper *self = sink->context;

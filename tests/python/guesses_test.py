@@ -116,6 +116,16 @@ class Guesses(unittest.TestCase):
         self.assertGreater(abs(pulled.energy.input_work), 1e-5)
         self.assertLess(abs(pulled.energy.residual), 1e-3 * abs(pulled.energy.input_work))
 
+        def look_ahead(sim):
+            here = sim.snapshot()
+            sim.load["top"] = (0, 5)
+            sim.advance(300)
+            sim.restore(here)
+
+        more = {"integrator": "rk4-events", "every": "0.3 ms"}
+        run, motion = robot.run(**how | more), robot.run(controller=look_ahead, **how | more)
+        self.assertEqual((motion.table.split("computed")[0], motion.to_csv()), (run.table.split("computed")[0], run.to_csv()))
+
         def stop(sim):
             if sim.time > 0.05:
                 raise KeyboardInterrupt
@@ -125,11 +135,12 @@ class Guesses(unittest.TestCase):
         self.assertEqual(caught.exception.result.status, "interrupted")
         self.assertAlmostEqual(caught.exception.result.time[-1], 0.0501)
         sim = robot.simulation(step="0.1 ms", record=True)
-        self.assertRaisesRegex(ValueError, "cannot go back", sim.restore, sim.snapshot())
         sim.advance(7)
+        kept = sim.snapshot()
         motion = sim.finish()
         self.assertEqual((motion.status, motion["position"][-1].tolist()), ("interrupted", sim.position.tolist()))
         self.assertRaisesRegex(ValueError, "was finished", sim.advance, 1)
+        self.assertRaisesRegex(ValueError, "of another simulation", sim.restore, kept)
         self.assertRaisesRegex(ValueError, "records nothing, or was finished", sim.finish)
         self.assertRaisesRegex(ValueError, "records nothing", robot.simulation(step="0.1 ms").finish)
 
