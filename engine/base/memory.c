@@ -41,6 +41,12 @@ void *strut_reallocate(void *block, size_t count, size_t size) {
   return realloc(block, count * size > 0 ? count * size : 1);
 }
 
+bool strut_has_memory(size_t bytes) {
+  void *block = strut_allocate(1, bytes);
+  strut_release(block);
+  return block != NULL;
+}
+
 bool strut_grow(void *block, size_t *capacity, size_t count, size_t size) {
   void *items;
   if (count < *capacity) return true;

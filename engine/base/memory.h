@@ -24,6 +24,8 @@ STRUT_API void *strut_reallocate(void *block, size_t count, size_t size);
 STRUT_API bool strut_grow(void *block, size_t *capacity, size_t count, size_t size);
 /** Frees a block of strut_allocate; NULL is allowed. */
 STRUT_API void strut_release(void *block);
+/** Could so many bytes be had? Asked before libraries that end the process, or crash, where they find none. */
+STRUT_API bool strut_has_memory(size_t bytes);
 
 /** Calls of strut_allocate and strut_reallocate since the start of the process (all threads). */
 STRUT_API uint64_t strut_allocation_count(void);

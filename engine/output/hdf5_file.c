@@ -313,7 +313,7 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
 /* Appends the rows gathered to the dataset. */
 static bool flush_series(series *self) {
   if (self->held == 0) return true;
-  if (!strut_hdf5_has_memory()) {
+  if (!strut_has_memory(STRUT_HDF5_MEMORY)) {
     errno = ENOMEM;
     return false;
   }

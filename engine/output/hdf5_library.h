@@ -32,11 +32,8 @@ strut_status strut_hdf5_load(const strut_hdf5_library **library, strut_error *er
 /** The same, and does what strut_hdf5_leave_at_exit has asked for. */
 strut_status strut_hdf5_ready(const strut_hdf5_library **library, strut_error *error);
 
-/**
- * Whether there is as much memory as a few calls of the library take, chunks and filters included. It
- * crashes where its own allocations fail, so this is asked before.
- */
-STRUT_API bool strut_hdf5_has_memory(void);
+/** What a few calls of the library take, chunks and filters included, for strut_has_memory [bytes]. */
+enum { STRUT_HDF5_MEMORY = 8 << 20 };
 
 /* Of trajectory.c, for the reader. */
 

@@ -116,7 +116,7 @@ static void put_cell(cell_table *table, const char *title, const strut_value_row
     table->failed = table->failed || !column->title || !column->cell;
   }
   add_value(&buffer, row, of, value, table->digits);
-  bool known = buffer.length > 0;
+  bool known = buffer.failed || buffer.length > 0;
   char *text = strut_buffer_take(&buffer);
   if (known && !table->failed) {
     const char *cell = text ? strut_arena_format(&table->arena, "%s", text) : NULL;

@@ -173,6 +173,10 @@ strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const strut_scen
   return &self->sink;
 }
 
+void strut_trajectory_cut(strut_trajectory *trajectory, size_t frames) {
+  if (trajectory->recorded > frames) trajectory->frames = trajectory->recorded = frames;
+}
+
 void strut_trajectory_sink_free(strut_sink *sink) {
   if (!sink) return;
   keeper *self = sink->context;
@@ -199,7 +203,7 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
   strut_status status = STRUT_OK;
   if (!path || !ready) {
     status = strut_no_memory(error, "for the recorded motion");
-  } else if (!strut_hdf5_has_memory()) {
+  } else if (!strut_has_memory(STRUT_HDF5_MEMORY)) {
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory reading '%s'", path);
   } else if (access(path, R_OK) != 0) {
     char reason[128];
@@ -254,17 +258,9 @@ size_t strut_data_dots(const strut_scene *scene, const strut_channel_row *row, s
 
 /* The sink in front of the HDF5 library, which is loaded when a run begins to write. */
 
-enum { RESERVE = 8 << 20 };
-
 static atomic_bool leaves_at_exit;
 
 void strut_hdf5_leave_at_exit(void) { leaves_at_exit = true; }
-
-bool strut_hdf5_has_memory(void) {
-  void *block = strut_allocate(1, RESERVE);
-  strut_release(block);
-  return block != NULL;
-}
 
 strut_status strut_hdf5_ready(const strut_hdf5_library **library, strut_error *error) {
   strut_status status = strut_hdf5_load(library, error);
@@ -283,7 +279,7 @@ typedef struct late_sink {
 static strut_status begin_late(void *context, const strut_record_layout *layout,
                                strut_error *error) {
   late_sink *self = context;
-  if (!strut_hdf5_has_memory()) return strut_no_memory(error, "while writing files");
+  if (!strut_has_memory(STRUT_HDF5_MEMORY)) return strut_no_memory(error, "while writing files");
   strut_status status = strut_hdf5_ready(&self->library, error);
   if (status != STRUT_OK) return status;
   self->writer = self->library->create(self->directory, self->scene_text);

@@ -38,6 +38,8 @@ STRUT_API const double *strut_trajectory_channel(const strut_trajectory *traject
  */
 STRUT_API strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const strut_scene *scene,
                                             strut_channels channels, size_t room);
+/** Forgets the frames of such a sink, which none was left out of, from that number on. */
+STRUT_API void strut_trajectory_cut(strut_trajectory *trajectory, size_t frames);
 /** Frees the sink, not the trajectory. */
 STRUT_API void strut_trajectory_sink_free(strut_sink *sink);
 /**

@@ -157,8 +157,7 @@ bool strut_recording_lacks(const strut_recording *recording, int64_t n) {
   return recording->sink_count && recording->last < n;
 }
 
-/* Passes all rows to the sinks; rows that a sink refuses are not offered again. */
-static strut_status flush_rows(strut_recording *recording, strut_error *error) {
+strut_status strut_recording_flush(strut_recording *recording, strut_error *error) {
   size_t count = recording->row_count;
   recording->row_count = 0;
   for (size_t s = 0; s < recording->begun && count; s++) {
@@ -215,7 +214,7 @@ strut_status strut_recording_sample(strut_state *state, strut_recording *recordi
     recording->last = state->step;
   }
   bool full = recording->row_count + recording->in_step + 1 > recording->capacity;
-  return full ? flush_rows(recording, error) : STRUT_OK;
+  return full ? strut_recording_flush(recording, error) : STRUT_OK;
 }
 
 /* Takes the samples of step n that are due before the end of the piece, which stands `later` than it says [s]. */
@@ -278,7 +277,7 @@ void strut_recording_observe(strut_state *state, strut_recording *recording,
 
 strut_status strut_recording_finish(strut_recording *recording, strut_status run_status,
                                     strut_error *error) {
-  strut_status status = flush_rows(recording, error);
+  strut_status status = strut_recording_flush(recording, error);
   if (status) run_status = status;
   for (size_t s = 0; s < recording->begun; s++) {
     strut_error own = {0};

@@ -54,6 +54,8 @@ bool strut_recording_lacks(const strut_recording *recording, int64_t n);
 /** Samples the state where that is due; passes rows on where another step's may have no room. */
 strut_status strut_recording_sample(strut_state *state, strut_recording *recording, bool due,
                                     strut_error *error);
+/** Passes all rows to the sinks; rows that a sink refuses are not offered again. */
+strut_status strut_recording_flush(strut_recording *recording, strut_error *error);
 /**
  * Passes the remaining rows on and ends every sink with the status of the run; returns the first
  * failure.

@@ -243,8 +243,8 @@ struct strut_stepping_snapshot {
   strut_state state;
   int64_t stop;
   strut_status status;
-  double *inputs; /* inputs_store */
-  void *arena;    /* strut_arena_store */
+  double *inputs;        /* inputs_store */
+  void *arena, *measure; /* strut_arena_store: of the state, of what is measured */
 };
 
 static uint64_t next_identity(void) {
@@ -257,7 +257,8 @@ static strut_status make_plain(strut_experiment *experiment, bool recorded, stru
   if (!(experiment->step > 0.0))
     return strut_fail(error, STRUT_USAGE,
                       "the scene leaves its step to be chosen: a simulation needs the option "
-                      "'step', such as 0.1 ms");
+                      "'step', such as 0.1 ms, and with dry friction 'integrator', such as "
+                      "rk4-events");
   experiment->accuracy = 0.0;
   experiment->steady.wanted = false;
   if (recorded) return STRUT_OK;
@@ -369,6 +370,7 @@ strut_status strut_stepping_finish(strut_stepping *stepping, strut_summary *summ
   summary->controlled = true;
   summary->input_work = stepping->inputs.work;
   stepping->summary = (strut_summary){0};
+  stepping->identity = next_identity(); /* no snapshot brings it back to where it records */
   if (!stepping->status)
     stepping->status = strut_fail(&stepping->error, STRUT_USAGE, "the simulation was finished");
   return status;
@@ -406,38 +408,48 @@ double *strut_stepping_input(strut_stepping *stepping, strut_input input, size_t
 
 double strut_stepping_input_work(const strut_stepping *stepping) { return stepping->inputs.work; }
 
+int64_t strut_stepping_recorded(const strut_stepping *stepping) {
+  return stepping->run.recording.sampled;
+}
+
 /* ---- snapshots ---- */
 
-strut_stepping_snapshot *strut_stepping_store(const strut_stepping *stepping) {
+strut_stepping_snapshot *strut_stepping_store(strut_stepping *stepping) {
   strut_stepping_snapshot *snapshot = strut_allocate(1, sizeof *snapshot);
-  if (!snapshot) return NULL;
   const strut_state *state = stepping->run.state;
+  const strut_arena *measured = &stepping->run.measure.arena;
+  if (!snapshot || strut_recording_flush(&stepping->run.recording, NULL) != STRUT_OK)
+    return strut_release(snapshot), NULL;
   *snapshot = (strut_stepping_snapshot){.identity = stepping->identity,
                                         .run = stepping->run,
                                         .state = *state,
                                         .stop = stepping->stop,
                                         .status = stepping->status};
   snapshot->arena = strut_allocate(strut_arena_stored_size(&state->arena), 1);
+  snapshot->measure = strut_allocate(strut_arena_stored_size(measured), 1);
   snapshot->inputs = inputs_store(&stepping->inputs);
-  if (!snapshot->arena || !snapshot->inputs) {
+  if (!snapshot->arena || !snapshot->measure || !snapshot->inputs) {
     strut_stepping_snapshot_free(snapshot);
     return NULL;
   }
   strut_arena_store(&state->arena, snapshot->arena);
+  strut_arena_store(measured, snapshot->measure);
   return snapshot;
 }
 
 bool strut_stepping_restore(strut_stepping *stepping, const strut_stepping_snapshot *snapshot) {
-  if (snapshot->identity != stepping->identity || stepping->sink) return false;
+  if (snapshot->identity != stepping->identity) return false;
   strut_state *state = stepping->run.state;
-  strut_arena arena = state->arena; /* may have grown since */
+  strut_arena arena = state->arena, measured = stepping->run.measure.arena; /* may have grown */
   inputs_restore(&stepping->inputs, stepping->model, snapshot->inputs);
   stepping->run = snapshot->run;
+  stepping->run.measure.arena = measured;
   stepping->stop = snapshot->stop;
   stepping->status = snapshot->status;
   *state = snapshot->state;
   state->arena = arena;
   strut_arena_restore(&state->arena, snapshot->arena);
+  strut_arena_restore(&stepping->run.measure.arena, snapshot->measure);
   refresh(stepping);
   return true;
 }
@@ -445,6 +457,7 @@ bool strut_stepping_restore(strut_stepping *stepping, const strut_stepping_snaps
 void strut_stepping_snapshot_free(strut_stepping_snapshot *snapshot) {
   if (!snapshot) return;
   strut_release(snapshot->arena);
+  strut_release(snapshot->measure);
   strut_release(snapshot->inputs);
   strut_release(snapshot);
 }

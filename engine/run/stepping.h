@@ -64,9 +64,12 @@ STRUT_API double *strut_stepping_input(strut_stepping *stepping, strut_input inp
 /** Work that changes of inputs have done [J]. */
 STRUT_API double strut_stepping_input_work(const strut_stepping *stepping);
 
+/** Rows that the sink gets of what was done; after a restore it may have more. */
+STRUT_API int64_t strut_stepping_recorded(const strut_stepping *stepping);
+
 /** All that changes while it is stepped, inputs too. NULL: memory is out. */
-STRUT_API strut_stepping_snapshot *strut_stepping_store(const strut_stepping *stepping);
-/** Back to a snapshot of the same stepping: what follows has the same bits. False: of another, or with a sink. */
+STRUT_API strut_stepping_snapshot *strut_stepping_store(strut_stepping *stepping);
+/** Back to a snapshot of the same stepping: what follows has the same bits. False: it is of another. */
 STRUT_API bool strut_stepping_restore(strut_stepping *stepping,
                                       const strut_stepping_snapshot *snapshot);
 STRUT_API void strut_stepping_snapshot_free(

@@ -255,6 +255,31 @@ fit:
     check(plan[0]["name"] == "all" and plan[-1]["standard_errors"]["k"] is None, f"plan: {plan}")
 
 
+# ---- a tensile test, followed five times as far as it was measured: its steps are long between the measured points ----
+
+def tensile():
+    pulled = [0.012 * i / 60 for i in range(61)]
+    table("pull.csv", {"u": pulled, "F": [180 * 0.006 * math.expm1(u / 0.006) for u in pulled]}, 0, header="u [m],F [N]")
+    write("pulled.yaml", """strut: 1
+parameters: {k: 100 N/m, s: 5 mm}
+nodes: {grip: {position: [0, 0], fixed: both}, head: {position: [50 mm, 0], fixed: y, mass: 1 g}}
+members: {spring: {kind: spring, nodes: [grip, head], stiffness: k, rest_length: 50 mm, law: {kind: exponential, scale: s}}}
+""")
+    text = """model: pulled.yaml
+data: {curve: {file: pull.csv}}
+path: {over: head.x, until: 62 mm}
+fit:
+  over: {k: {from: 20 N/m, to: 1 kN/m, scale: log}, s: {from: 1 mm, to: 50 mm}}
+  match: {curve: {displacement: curve.u, force: curve.F, noise: 10 mN}}
+  starts: 2
+"""
+    found, _ = fit("pulled-fit", text)
+    for name, truth in (("k", 180), ("s", 0.006)):
+        check(abs(found[name]["value"] - truth) < 0.1 * found[name]["standard_error"], f"{found[name]}, not {truth}")
+    write("no-path.yaml", "strut: 1\nstudy: s\n" + text.replace("path: {over: head.x, until: 62 mm}\n", ""))
+    run("sweep", "no-path.yaml", "-q", code=2, err="needs the study's 'path' over a coordinate, such as {over: b.y, until: 5 mm}")
+
+
 # ---- two dampers that act alike; the noise not known; threads, kills, workers ----
 
 ALIKE = """model: alike.yaml
@@ -557,7 +582,8 @@ if "--long" in sys.argv:
     alike()
     long()
     finish()
-for part in (crawls, axis, member, statics, alike, ranges, judged, delayed, placed, driven, vibrates, refusals):
+for part in (crawls, axis, member, statics, tensile, alike, ranges, judged, delayed, placed, driven, vibrates,
+             refusals):
     part()
 for held in (coverage(20), coverage(12, SEEN_IN_PART)):
     check(all(share >= 0.75 for share in held.values()), f"intervals of noises hold: {held}")

@@ -96,7 +96,7 @@ expect 0 run hop.yaml --quiet --json
 cp out one
 expect 0 run hung.yaml --quiet --json
 [ "$(grep energy one)" = "$(grep energy out)" ] || fail "a node by a text parameter: $(cat out)"
-tells 2 "unknown node 'bal' in parameter 'hung'; did you mean 'ball'" run hung.yaml --set hung=bal
+tells 2 "error: --set hung=bal: unknown node 'bal' in parameter 'hung'; did you mean 'ball'" run hung.yaml --set hung=bal
 tells 2 "unknown node 'foot' in parameter 'hung'; the names here are 'ball', 'top'" run hung.yaml --set hung=foot
 tells 2 "note: the parameter is used here" run hung.yaml --set hung=foot
 # So in expressions and keys of positions, and in parts, whose placements give it; only a group is named itself.

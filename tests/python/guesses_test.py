@@ -116,6 +116,16 @@ class Guesses(unittest.TestCase):
         self.assertGreater(abs(pulled.energy.input_work), 1e-5)
         self.assertLess(abs(pulled.energy.residual), 1e-3 * abs(pulled.energy.input_work))
 
+        def look_ahead(sim):
+            here = sim.snapshot()
+            sim.load["top"] = (0, 5)
+            sim.advance(300)
+            sim.restore(here)
+
+        more = {"integrator": "rk4-events", "every": "0.3 ms"}
+        run, motion = robot.run(**how | more), robot.run(controller=look_ahead, **how | more)
+        self.assertEqual((motion.table.split("computed")[0], motion.to_csv()), (run.table.split("computed")[0], run.to_csv()))
+
         def stop(sim):
             if sim.time > 0.05:
                 raise KeyboardInterrupt
@@ -125,11 +135,12 @@ class Guesses(unittest.TestCase):
         self.assertEqual(caught.exception.result.status, "interrupted")
         self.assertAlmostEqual(caught.exception.result.time[-1], 0.0501)
         sim = robot.simulation(step="0.1 ms", record=True)
-        self.assertRaisesRegex(ValueError, "cannot go back", sim.restore, sim.snapshot())
         sim.advance(7)
+        kept = sim.snapshot()
         motion = sim.finish()
         self.assertEqual((motion.status, motion["position"][-1].tolist()), ("interrupted", sim.position.tolist()))
         self.assertRaisesRegex(ValueError, "was finished", sim.advance, 1)
+        self.assertRaisesRegex(ValueError, "of another simulation", sim.restore, kept)
         self.assertRaisesRegex(ValueError, "records nothing, or was finished", sim.finish)
         self.assertRaisesRegex(ValueError, "records nothing", robot.simulation(step="0.1 ms").finish)
 
@@ -212,9 +223,15 @@ class Guesses(unittest.TestCase):
         strut.compare(scene, scene(friction=0.2), no_motion=True, plot=study.with_name("two.svg"), title="Two of them")
         self.assertGreater(study.with_name("two.svg").stat().st_size, 10000)
         self.assertRaisesRegex(ValueError, "no other svg; options of the figure", crawlers.svg, width="column")
+        self.assertRaisesRegex(AttributeError, r"^svg\(\) is its figure", lambda: crawlers.plot)
         self.assertRaisesRegex(TypeError, "did you mean 'accuracy'", strut.compare, scene, acuracy=1)
         self.assertRaisesRegex(ValueError, "accuracy.*'1 m'", strut.compare, scene, accuracy="1 m")
         self.assertRaises(strut.MissingFileError, strut.tradeoff, "none.yaml")
+        self.assertRaisesRegex(ValueError, "^unknown picture format 'x.gif'", strut.compare, scene, plot="x.gif")
+        bare = strut.loads("{strut: 1, nodes: {a: {position: [0, 0], mass: 1}}}", name="mine.yaml")
+        with self.assertRaisesRegex(strut.SceneError, "^mine.yaml:2:1: ") as caught:
+            strut.tradeoff(bare)
+        self.assertNotIn("strut-", caught.exception.report)  # the folder of the call
         self.assertRaisesRegex(AttributeError, "did you mean 'load'", lambda: strut.laod)
         self.assertRaisesRegex(AttributeError, "strut.load", lambda: strut.Model)
 

@@ -87,6 +87,12 @@ class Studies(unittest.TestCase):
         self.assertEqual(fit["k"][0], fit.parameters.k.value)
         self.assertEqual(fractions[-1], 1.0)
         again = pickle.loads(pickle.dumps(fit))
+        self.assertEqual(again.figures, {file.name: file.read_text() for file in sorted(pathlib.Path("program").glob("*.svg"))})
+        self.assertEqual(fit.svg(), again.figures["fit.svg"])
+        fit.save("kept.csv")
+        self.assertEqual(pathlib.Path("kept.csv").read_bytes(), pathlib.Path("program/table.csv").read_bytes())
+        self.assertRaisesRegex(ValueError, "^'.png' is .*: .json .svg .csv$", fit.save, "kept.png")
+        self.assertRaisesRegex(AttributeError, "^figures and svg", lambda: fit.plot)
         self.assertEqual((again.parameters, list(again["end"])), (fit.parameters, list(fit["end"])))
         self.assertIn("k 99.", repr(fit))
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The painter of figures: heading, legend, panels in rows, foot. */
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "engine/output/draw/painter.h"
@@ -128,13 +129,24 @@ static double put_page(page *self, strut_canvas *canvas, double width, bool *fin
   return box.y + (foot ? strut_draw_foot(canvas, box, figure, NULL, draw) : 0) + EDGE;
 }
 
+/* What Fontconfig and Pango take for fonts and threads, the first time: without it they end the process [bytes]. */
+enum { FONT_MEMORY = 256 << 20 };
+
+static strut_status open_pixels(int width, int height, double scale, strut_canvas **canvas,
+                                strut_error *error) {
+  static atomic_bool ready;
+  if (!ready && !strut_has_memory(FONT_MEMORY)) return strut_no_memory(error, "for fonts");
+  ready = true;
+  return strut_canvas_open_pixels(width, height, scale, canvas, error);
+}
+
 static strut_status draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
   page p;
   strut_canvas *canvas = NULL;
   double width = plot->width > 0 ? plot->width : PAGE;
   bool fine = begin_page(&p, figure, plot);
   if (!fine) return strut_no_memory(error, "while drawing");
-  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &canvas, error);
+  strut_status status = open_pixels(1, 1, 1.0, &canvas, error);
   if (status) return status;
   double height = put_page(&p, canvas, width, NULL);
   strut_canvas_free(canvas);
@@ -158,7 +170,7 @@ static const unsigned char *paint(strut_canvas *canvas, strut_figure *figure, si
 extern STRUT_API const strut_cairo_library strut_cairo_table;
 const strut_cairo_library strut_cairo_table = {.stamp = STRUT_LIBRARY_STAMP(strut_cairo_library),
                                                .draw = draw,
-                                               .open = strut_canvas_open_pixels,
+                                               .open = open_pixels,
                                                .paint = paint,
                                                .free = strut_canvas_free};
 

@@ -61,7 +61,10 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
                    (layout->plan->study->path.over &&
                     strut_coordinate_find(&setup->scene, layout->plan->study->path.over) >= 0);
     if (!follows)
-      return refuse(layout, m, s, "needs a 'path' over a coordinate, such as b.y", error);
+      return refuse(layout, m, s,
+                    "needs the study's 'path' over a coordinate, such as {over: b.y, until: 5 mm} "
+                    "for displacements up to 5 mm",
+                    error);
     const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
     if (unit && strcmp(unit, match->series[s].unit) != 0)
       return refuse(layout, m, s, "has another unit than its numbers", error);

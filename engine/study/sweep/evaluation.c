@@ -78,14 +78,34 @@ double strut_goals_shape_distance(const strut_study *study, const strut_scene *s
   return count ? sqrt(square / n) : (double)NAN;
 }
 
+/* Does the curve from point i - 1 to point i go on in that direction, without an event? */
+static bool is_smooth(const strut_path *path, size_t i, double direction) {
+  double u0 = path->points[i - 1].at.factor, u = path->points[i].at.factor;
+  for (size_t k = 0; k < path->event_count; k++) {
+    double at = path->events[k].at.factor;
+    if (at >= fmin(u0, u) && at <= fmax(u0, u)) return false;
+  }
+  return (u - u0) * direction > 0.0;
+}
+
 double strut_goals_force_at(const strut_path *path, double displacement) {
+  const strut_path_point *points = path->points;
   for (size_t i = 0; i < path->point_count && path->coordinate >= 0; i++) {
-    const strut_path_point *point = &path->points[i], *before = i ? point - 1 : point;
-    double u = point->at.factor, u0 = before->at.factor;
-    double f = point->at.reaction[path->coordinate], f0 = before->at.reaction[path->coordinate];
-    if (u == displacement) return f;
-    if (i && (u0 - displacement) * (u - displacement) < 0.0)
-      return f0 + (f - f0) * (displacement - u0) / (u - u0);
+    double u = points[i].at.factor, u0 = points[i ? i - 1 : i].at.factor, force = 0.0;
+    if (u == displacement) return points[i].at.reaction[path->coordinate];
+    if (!i || !((u0 - displacement) * (u - displacement) < 0.0)) continue;
+    bool smooth = is_smooth(path, i, u - u0); /* then by the polynomial of up to four points */
+    size_t first = i - 1 - (smooth && i > 1 && is_smooth(path, i - 1, u - u0));
+    size_t last = i + (smooth && i + 1 < path->point_count && is_smooth(path, i + 1, u - u0));
+    for (size_t k = first; k <= last; k++) {
+      double part = points[k].at.reaction[path->coordinate];
+      for (size_t other = first; other <= last; other++)
+        if (other != k)
+          part *= (displacement - points[other].at.factor) /
+                  (points[k].at.factor - points[other].at.factor);
+      force += part;
+    }
+    return force;
   }
   return (double)NAN;
 }

@@ -435,7 +435,7 @@ STRUTLIB_API void strutlib_result_free(strutlib_result *result);
  * A simulation at the start of the scene's run, settled if the scene says so. Options: "step",
  * "integrator", "tolerance", "force" and those of the model ("bars", "mass-model",
  * "friction-law", "damping-law") as of strutlib_run. The duration of the scene's run is no limit, unless the
- * simulation records by "record" or "channels": then it ends there, and cannot be restored.
+ * simulation records by "record" or "channels": then it ends there.
  * `control` stays in use by every advance until the simulation is closed; it may be NULL.
  */
 STRUTLIB_API strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene,

@@ -363,10 +363,13 @@ int strutlib_simulation_restore(strutlib_simulation *simulation, const strutlib_
   if (abi_lacks(error, simulation, "simulation") || abi_lacks(error, snapshot, "snapshot"))
     return STRUTLIB_USAGE;
   if (error) *error = NULL;
-  if (strut_stepping_restore(simulation->stepping, snapshot->stored)) return STRUTLIB_OK;
-  return abi_fail(error, STRUTLIB_USAGE, "%s",
-                  simulation->sink ? "a simulation that records cannot go back"
-                                   : "the snapshot is of another simulation");
+  if (!strut_stepping_restore(simulation->stepping, snapshot->stored))
+    return abi_fail(error, STRUTLIB_USAGE, "the snapshot is of another simulation");
+  if (simulation->recorded) {
+    run_detail *run = simulation->recorded->detail;
+    strut_trajectory_cut(&run->motion, (size_t)strut_stepping_recorded(simulation->stepping));
+  }
+  return STRUTLIB_OK;
 }
 
 void strutlib_snapshot_free(strutlib_snapshot *snapshot) {

@@ -109,7 +109,8 @@ static const strut_spelling spellings[] = {
     {STRUT_SECTION_SOLVER, NULL, "method", "integrator", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_RUN, NULL, "time", "duration", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_RUN, NULL, "length", "duration", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_STUDY, NULL, "over", "axes", STRUT_SPELLING_MISTAKE}};
+    {STRUT_SECTION_STUDY, NULL, "over", "axes", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_FIGURE, NULL, "by", "series", STRUT_SPELLING_MISTAKE}};
 
 const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                           const char *text) {

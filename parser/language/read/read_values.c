@@ -214,6 +214,9 @@ static bool is_reported(strut_reader *reader, strut_piece name) {
   return false;
 }
 
+/* Characters of a text without quotes that is no sum. */
+static const char WORDS[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_ ";
+
 bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner, strut_compiler *compiler, strut_quantity *quantity) {
   strut_expression_error error;
@@ -237,7 +240,7 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
   }
   const bool text = strcmp(owner.kind, "the parameters") == 0 &&
                     strstr(error.message, "unknown parameter") &&
-                    error.length == strlen(value->text);
+                    !value->text[strspn(value->text, WORDS)];
   if (!fine && error.message[0])
     strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s%s", key,
                        strut_owner_text(reader, owner), error.message,
@@ -383,9 +386,14 @@ static int32_t find_named_by_parameter(strut_reader *reader, const strut_tree *v
   int32_t index = strut_find_literally(reader, names->map, value, text->text);
   if (index >= 0) return index;
   size_t item = reader->diagnostics->count;
-  const char *hint = hint_of_names(reader, text, names);
-  strut_report_error(reader, text->place, "unknown %s '%s' in parameter '%s'%s", names->kind,
-                     strut_sanitised_text(reader, text->text), value->text,
+  const char *hint = hint_of_names(reader, text, names), *option = "";
+  const strut_setting *set =
+      strut_parameter_in_scope(reader, strut_scope_of(reader, value), value->text)->set;
+  if (set && !set->place.line)
+    option = strut_formatted(reader, &reader->scratch, "--set %s=%s: ", value->text,
+                             strut_sanitised_text(reader, set->text));
+  strut_report_error(reader, text->place, "%sunknown %s '%s' in parameter '%s'%s", option,
+                     names->kind, strut_sanitised_text(reader, text->text), value->text,
                      *hint ? hint : list_of_names(reader, names));
   strut_diagnose_note(reader->diagnostics, item, value->place, "the parameter is used here");
   return -1;

@@ -378,7 +378,8 @@ strut_status strut_plot_settings_read(const strut_arguments *arguments, double u
     if (status) return status;
   }
   if (!(width >= NARROWEST && width <= WIDEST))
-    return strut_usage_error(arguments, "--width %s: expected a width between 40 mm and 1 m", text);
+    return strut_usage_error(
+        arguments, "--width %s: expected a width between 40 mm and 1 m, such as 88mm", text);
   plot->width = text || !(usual > 0) ? width * POINTS : usual;
   strut_status status = read_axis(arguments, 0, &plot->x);
   return status ? status : read_axis(arguments, 1, &plot->y);
