@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut equilibria finds every state of a chain of bistable cells, those about to vanish too; and of
-lattices of n cells, which have 2^n stable states, one for each choice of up or down, as long as
+"""strut equilibria finds every state of a chain of bistable cells, those about to vanish too; and
+of lattices of n cells, which have 2^n stable states, one for each choice of up or down, as long as
 their coupling is weak: all where they are few; else what it says of the rest holds.
 
 The chain is enumerated apart: where the first apex stands tells where all others must, by the

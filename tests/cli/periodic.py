@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of strut path --periodic share: oscillators of known motions, and Duffing's folds."""
+"""What tests of strut path --periodic share: oscillators of known motions, and Duffing's folds."""
 import math
 
 from testing import answer, models

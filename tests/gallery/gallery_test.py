@@ -136,7 +136,7 @@ check | .members.m.drawn_length | 5
 check | .members.( | 5 | 1
 check | .name | itself | = ;; .members.m.stiffness | 2 | 0
 """
-check(find_wrong(path("self.yaml"), logical_lines(GOOD)) == (6, {}), "a right answer is found wrong")
+check(find_wrong(path("self.yaml"), logical_lines(GOOD)) == (6, {}), "a right answer is wrong")
 noticed = find_wrong(path("self.yaml"), logical_lines(BAD))[1]
 check(noticed.keys() == set(range(1, 12)), f"the test of itself notices only {noticed}")
 

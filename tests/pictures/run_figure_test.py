@@ -243,7 +243,7 @@ def check_stopped():
     write("endless.yaml", wild.replace("periods: 20", "periods: 1000000"))
     before, looks = os.listdir("."), itertools.count()
     stopped("run", "endless.yaml", "-q", "-o", "far", "--plot", "stopped.svg", by=signal.SIGINT,
-            after=lambda: os.listdir(".") != before and next(looks) > 150)  # 0.3 s after its first file
+            after=lambda: os.listdir(".") != before and next(looks) > 150)  # 0.3 s after
     check(os.path.exists("stopped.svg"), "a run that was stopped is not drawn")
 
 

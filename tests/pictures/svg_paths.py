@@ -127,7 +127,7 @@ def circles(paths, stroke):
 
 
 class Window:
-    """Where places [m] are on the page, upright: by where two of them are drawn that are far apart."""
+    """Where places [m] are on the page, upright, by where the two farthest apart are drawn."""
 
     def __init__(self, places, drawn):
         pairs = [(math.dist(places[i], places[k]), i, k) for i in range(len(places)) for k in range(i)]
