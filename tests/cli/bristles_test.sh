@@ -19,13 +19,11 @@ cat >apart.py <<'PY'
 m, k, V, N, mu0, mu, v0, d, tau = 1.0, 200.0, 0.01, 9.81, 0.15, 0.1, 1e-3, 15e-6, 3e-3
 s0 = mu0 / d
 
-
 def rates(y):  # position, speed, bristles' deflection in metres, as in the paper
     u = y[1] - V
     g = (mu + (mu0 - mu) / (1 + (u / v0) ** 2)) / s0
     z = u - abs(u) * y[2] / g
     return y[1], (-k * y[0] - N * s0 * (y[2] + tau * z)) / m, z
-
 
 y, h, most = (0.0, 0.0, 0.0), 2e-5, 0.0
 for _ in range(150000):

@@ -67,4 +67,3 @@ for name in 'Füße' '节点' 'κόμβος' 'узел'; do
   named "$name"
   expect 0 check named.yaml
 done
-

@@ -8,7 +8,6 @@ value() { echo ".measured.$1.value"; }
 closing='.energy | .residual / .exchanged'
 closes() { near "$closing" 0 "$1"; }
 
-
 # A free bar in space: its centre of mass goes on uniformly, whatever the mass on it does, and the bar goes
 # back by the mass's part of the whole. Mass 0.5 of 1 + 1.5 + 0.3 + 0.5 kg, 0.2 of 1 m there and back.
 for masses in consistent lumped; do
