@@ -51,7 +51,7 @@ MUTANTS = [
     Mutant("csv-writer-leaks", "engine/output/csv.c", "  if (self->directory) return &self->sink;\n  strut_csv_free(&self->sink);\n",
            "  if (self->directory) return &self->sink;\n", "a CSV writer that is refused memory for its folder's name leaks", "csv"),
     Mutant("csv-reader-leaks", "parser/program/command/scene_options.c",
-           "  if (status != STRUT_OK) strut_arena_free(&table->arena);\n", "",
+           "  strut_arena_free(&table->arena);\n  *table", "  *table",
            "what was read of a table with an error is not released", "table_file|table_select|csv"),
     Mutant("conic-without-rounding", "engine/statics/rigidity/stiffness.c", "value[0] <= ROUNDING * value[2]",
            "value[0] <= 0.0", "members of two directions are said to lie on no conic, but for luck", "rigidity"),
