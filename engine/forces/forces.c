@@ -128,33 +128,6 @@ void strut_mass_damping_apply(const strut_model *model, const strut_state *state
   strut_power_add(state->latest->power, STRUT_POWER_MEMBERS, lost);
 }
 
-void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
-  const strut_member_table *members = &model->members;
-  const mass_shares share = shares_of(model);
-  if (!(model->terms & STRUT_TERM_MASS_DAMPING)) return;
-  for (int c = 0; c < 2; c++, row_of++) {
-    for (int32_t i = 0; i < model->node_count; i++)
-      if (row_of[2 * i] >= 0)
-        strut_triplets_add(sum, row_of[2 * i], row_of[2 * i],
-                           model->mass_damping * model->point_mass[i]);
-    for (int32_t j = 0; j < members->count; j++) {
-      double m = model->mass_damping * members->mass[j];
-      int32_t a = row_of[members->from[j]], b = row_of[members->to[j]];
-      if (a >= 0) strut_triplets_add(sum, a, a, share.own * m);
-      if (b >= 0) strut_triplets_add(sum, b, b, share.own * m);
-      if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, share.other * m);
-    }
-    for (int32_t i = 0; i < model->sliding.count; i++) {
-      const strut_sliding_item *item = &model->sliding.item[i];
-      int32_t a = row_of[item->at[0]], b = row_of[item->at[1]];
-      double m = model->mass_damping * item->mass, far = item->start, near = 1.0 - far;
-      if (a >= 0) strut_triplets_add(sum, a, a, near * near * m);
-      if (b >= 0) strut_triplets_add(sum, b, b, far * far * m);
-      if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, near * far * m);
-    }
-  }
-}
-
 /* Lengths and forces of members, hinges and cells for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
 

@@ -9,6 +9,7 @@
 
 #include "engine/base/indices.h"
 #include "engine/forces/nearby.h"
+#include "engine/model/mass.h"
 
 void strut_force_begin(const strut_model *model, int32_t number, strut_force *force) {
   int32_t members = model->members.count, element = number - members;
@@ -312,7 +313,8 @@ static bool build(assembly *self, const double *rest, strut_closed closed, strut
   for (const strut_force *force; (force = strut_force_next(&visit));) add_force(self, force);
   if (self->stiffest) add_maxwell(self, rest);
   if (self->stiffest) add_rubbing(self);
-  strut_mass_damping_add(self->model, self->row_of, &self->damping);
+  if (self->model->terms & STRUT_TERM_MASS_DAMPING)
+    strut_mass_add(self->model, self->row_of, self->model->mass_damping, true, &self->damping);
   tangent->stiffness = strut_sparse_build(tangent->n, &self->stiffness, arena);
   tangent->damping = strut_sparse_build(tangent->n, &self->damping, arena);
   return tangent->stiffness && tangent->damping;
@@ -323,7 +325,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
                                     strut_tangent *tangent) {
   strut_arena scratch = {0};
   size_t both = (size_t)model->length;
-  size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model) +
+  size_t most = strut_tangent_entries(model, true) + strut_mass_entries(model) +
                 10 * (size_t)model->feedback.maxwell_count +
                 RUBBING_ENTRIES * (size_t)model->rubbing.count;
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);

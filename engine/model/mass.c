@@ -211,54 +211,50 @@ void strut_mass_free(strut_mass *mass) {
   strut_release(mass);
 }
 
-static void add_members(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
-  const strut_member_table *members = &model->members;
-  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
-  for (int32_t j = 0; j < members->count; j++) {
-    if (!(members->mass[j] > 0)) continue;
-    int32_t a = row_of[members->from[j] / 2], b = row_of[members->to[j] / 2];
-    double share = consistent ? members->mass[j] / 3.0 : members->mass[j] / 2.0;
-    if (a >= 0) strut_triplets_add(sum, a, a, share);
-    if (b >= 0) strut_triplets_add(sum, b, b, share);
-    if (consistent && a >= 0 && b >= 0) strut_triplets_add(sum, a, b, members->mass[j] / 6.0);
+/* Masses at both ends, and what they share. */
+static void add_ends(const int32_t *row_of, const uint32_t end[2], double first, double second,
+                     double shared, strut_triplets *sum) {
+  for (uint32_t c = 0; c < 2; c++) {
+    int32_t a = row_of[end[0] + c], b = row_of[end[1] + c];
+    if (a >= 0) strut_triplets_add(sum, a, a, first);
+    if (b >= 0) strut_triplets_add(sum, b, b, second);
+    if (a >= 0 && b >= 0 && shared > 0.0) strut_triplets_add(sum, a, b, shared);
   }
 }
 
-/* Those at rest on their members. */
-static void add_sliding_masses(const strut_model *model, const int32_t *row_of,
-                               strut_triplets *sum) {
+void strut_mass_add(const strut_model *model, const int32_t *row_of, double factor, bool moving,
+                    strut_triplets *sum) {
+  const strut_member_table *members = &model->members;
+  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    if (row_of[at] >= 0 && model->point_mass[at / 2] > 0)
+      strut_triplets_add(sum, row_of[at], row_of[at], factor * model->point_mass[at / 2]);
+  for (int32_t j = 0; j < members->count; j++) {
+    const uint32_t end[2] = {members->from[j], members->to[j]};
+    double mass = factor * members->mass[j], own = consistent ? mass / 3.0 : mass / 2.0;
+    if (mass > 0.0) add_ends(row_of, end, own, own, consistent ? mass / 6.0 : 0.0, sum);
+  }
   for (int32_t i = 0; i < model->sliding.count; i++) {
     const strut_sliding_item *item = &model->sliding.item[i];
-    int32_t a = row_of[item->at[0] / 2], b = row_of[item->at[1] / 2];
-    double far = item->start, near = 1.0 - far;
-    if (item->signal >= 0) continue;
-    if (a >= 0) strut_triplets_add(sum, a, a, item->mass * near * near);
-    if (b >= 0) strut_triplets_add(sum, b, b, item->mass * far * far);
-    if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, item->mass * near * far);
+    double mass = factor * item->mass, far = item->start, near = 1.0 - far;
+    if (moving || item->signal < 0)
+      add_ends(row_of, item->at, mass * near * near, mass * far * far, mass * near * far, sum);
   }
 }
 
 strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *scratch,
                                strut_sparse **matrix, int32_t **node) {
-  const uint8_t *fixed = model->fixed + coordinate;
   size_t count = (size_t)model->node_count;
   strut_triplets sum = {0};
-  int32_t *row_of = strut_arena_allocate(scratch, count, sizeof *row_of);
+  int32_t n = 0, *row_of = strut_arena_allocate(scratch, 2 * count, sizeof *row_of);
   *node = strut_arena_allocate(&model->arena, count, sizeof **node);
-  if (!row_of || !*node ||
-      !strut_triplets_reserve(
-          &sum, count + 3 * (size_t)(model->members.count + model->sliding.count), scratch))
+  if (!row_of || !*node || !strut_triplets_reserve(&sum, strut_mass_entries(model), scratch))
     return STRUT_NO_MEMORY;
-  int32_t n = 0;
-  for (int32_t i = 0; i < model->node_count; i++) {
-    row_of[i] = fixed[2 * i] ? -1 : n;
-    if (fixed[2 * i]) continue;
-    (*node)[n] = i;
-    if (model->point_mass[i] > 0) strut_triplets_add(&sum, n, n, model->point_mass[i]);
-    n++;
+  for (int32_t at = 0; at < 2 * model->node_count; at++) {
+    row_of[at] = at % 2 != coordinate || model->fixed[at] ? -1 : n;
+    if (row_of[at] >= 0) (*node)[n++] = at / 2;
   }
-  add_members(model, row_of, &sum);
-  add_sliding_masses(model, row_of, &sum);
+  strut_mass_add(model, row_of, 1.0, false, &sum);
   *matrix = strut_sparse_build(n, &sum, &model->arena);
   return *matrix ? STRUT_OK : STRUT_NO_MEMORY;
 }

@@ -71,3 +71,15 @@ void strut_mass_factor_single(const strut_mass_operator *op, const double *restr
  */
 strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *scratch,
                                strut_sparse **matrix, int32_t **node);
+
+/** Contributions of strut_mass_add at most. */
+static inline size_t strut_mass_entries(const strut_model *model) {
+  return 2 *
+         ((size_t)model->node_count + 3 * (size_t)(model->members.count + model->sliding.count));
+}
+/**
+ * Adds the masses at the rows of coordinates, row_of (length), -1: none, times a factor. Those on members are where
+ * they start; moving: also those that signals move.
+ */
+void strut_mass_add(const strut_model *model, const int32_t *row_of, double factor, bool moving,
+                    strut_triplets *sum);

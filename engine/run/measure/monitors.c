@@ -27,55 +27,25 @@ typedef struct product {
   double *image, stiff, damp; /* factors of K and D */
 } product;
 
-static void apply_member(const product *self, const strut_force *member) {
-  const double *unit = member->pose.b + 2;
-  uint32_t from = member->at[0], to = member->at[1];
-  const double motion[2] = {self->motion[to] - self->motion[from],
-                            self->motion[to + 1] - self->motion[from + 1]};
-  if (!(member->pose.strain > 0.0)) return;
-  double along = unit[0] * motion[0] + unit[1] * motion[1], across = self->stiff * member->across;
-  double pull = (self->stiff * member->pose.slope - across + self->damp * member->damping) * along;
-  for (uint32_t k = 0; k < 2; k++) {
-    double force = across * motion[k] + pull * unit[k];
-    self->image[from + k] -= force;
-    self->image[to + k] += force;
-  }
-}
-
-/* An element or a contact. */
-static void apply_element(const product *self, const strut_force *force) {
-  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT], along = 0.0, across = 0.0;
+static void apply_force(const product *self, const strut_force *force) {
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT], d[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * force->nodes;
-  bool bends = force->kind == STRUT_FORCE_ELEMENT;
-  for (int32_t k = 0; k < n; k += 2) {
-    const double *motion = self->motion + force->at[k / 2];
-    along += force->pose.b[k] * motion[0] + force->pose.b[k + 1] * motion[1];
-  }
-  memset(bend, 0, (size_t)(n * n) * sizeof *bend);
-  if (bends) strut_force_bend(self->model, force, self->q, self->stiff, bend);
+  strut_force_stiffness(self->model, force, self->q, k);
+  strut_force_square(force, self->damp * force->damping, d);
   for (int32_t r = 0; r < n; r++) {
-    double push =
-        (self->stiff * force->pose.slope + self->damp * force->damping) * along * force->pose.b[r];
-    for (int32_t c = 0; c < n && bends; c++)
-      push += bend[r * n + c] * self->motion[strut_force_coordinate(force, c)];
+    double push = 0.0;
+    for (int32_t c = 0; c < n; c++)
+      push += (self->stiff * k[r * n + c] + d[r * n + c]) *
+              self->motion[strut_force_coordinate(force, c)];
     self->image[strut_force_coordinate(force, r)] += push;
   }
-  if (force->across == 0.0) return;
-  for (int32_t k = 0; k < n; k++)
-    across += self->motion[strut_force_coordinate(force, k)] * force->side[k];
-  for (int32_t k = 0; k < n; k++)
-    self->image[strut_force_coordinate(force, k)] +=
-        self->stiff * force->across * across * force->side[k];
 }
 
 static void apply_forces(const product *self, const double *rest, strut_closed closed) {
   strut_force_visit visit = {
       .model = self->model, .q = self->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
   for (const strut_force *force; (force = strut_force_next(&visit));)
-    if (force->kind == STRUT_FORCE_MEMBER)
-      apply_member(self, force);
-    else
-      apply_element(self, force);
+    if (force->kind != STRUT_FORCE_MEMBER || force->pose.strain > 0.0) apply_force(self, force);
 }
 
 /* Adds noise to a motion, so that no eigenvector is missed for ever. */

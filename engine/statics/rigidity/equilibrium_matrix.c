@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/tangent.h"
+#include "engine/model/mass.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
@@ -169,42 +170,9 @@ static void add_force(sums *self, const strut_force *force) {
   strut_force_add(force, k, self->row_of, &self->geometric);
 }
 
-/* Masses at the ends of a member, and what both share. */
-static void add_ends(sums *self, const uint32_t end[2], double first, double second,
-                     double shared) {
-  for (uint32_t k = 0; k < 2; k++) {
-    int32_t a = self->row_of[end[0] + k], b = self->row_of[end[1] + k];
-    if (a >= 0) strut_triplets_add(&self->mass, a, a, first);
-    if (b >= 0) strut_triplets_add(&self->mass, b, b, second);
-    if (a >= 0 && b >= 0 && shared > 0.0) strut_triplets_add(&self->mass, a, b, shared);
-  }
-}
-
-static void add_masses(const strut_model *model, sums *self) {
-  const strut_member_table *members = &model->members;
-  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
-  for (int32_t at = 0; at < 2 * model->node_count; at++) {
-    int32_t row = self->row_of[at];
-    if (row >= 0) strut_triplets_add(&self->mass, row, row, model->point_mass[at / 2]);
-  }
-  for (int32_t j = 0; j < members->count; j++) {
-    const uint32_t end[2] = {members->from[j], members->to[j]};
-    double own = consistent ? members->mass[j] / 3.0 : members->mass[j] / 2.0;
-    add_ends(self, end, own, own, consistent ? members->mass[j] / 6.0 : 0.0);
-  }
-  for (int32_t i = 0; i < model->sliding.count; i++) {
-    const strut_sliding_item *item = &model->sliding.item[i];
-    double far = item->start, near = 1.0 - far;
-    add_ends(self, item->at, item->mass * near * near, item->mass * far * far,
-             item->mass * near * far);
-  }
-}
-
 static bool reserve(const strut_model *model, sums *self, strut_arena *scratch) {
-  size_t members = (size_t)model->members.count, contacts = (size_t)model->contacts.count;
-  size_t most = strut_tangent_entries(model, false), sliding = (size_t)model->sliding.count;
-  return strut_triplets_reserve(&self->mass, (size_t)model->length + 6 * (members + sliding),
-                                scratch) &&
+  size_t most = strut_tangent_entries(model, false), contacts = (size_t)model->contacts.count;
+  return strut_triplets_reserve(&self->mass, strut_mass_entries(model), scratch) &&
          strut_triplets_reserve(&self->elastic, most + 1, scratch) &&
          strut_triplets_reserve(&self->geometric, most + 1, scratch) &&
          strut_triplets_reserve(&self->contact, 3 * contacts + 1, scratch);
@@ -221,7 +189,7 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
   strut_status status = STRUT_NO_MEMORY;
   if (s.row_of && coordinate && reserve(model, &s, &scratch)) {
     int32_t n = matrices->n = strut_number_free(model, NULL, s.row_of, coordinate);
-    add_masses(model, &s);
+    strut_mass_add(model, s.row_of, 1.0, true, &s.mass);
     strut_force_visit visit = {.model = model,
                                .q = positions,
                                .rest = model->members.rest,
