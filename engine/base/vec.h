@@ -69,27 +69,23 @@ static inline double strut_largest_magnitude(const double *vector, ptrdiff_t n) 
 
 /*
  * Taylor sums for |x| <= pi/4, s = x^2: the first term left out is below 2e-17 in both. The even
- * and the odd powers of s are summed apart, so that neither waits for the other. For numbers, and for
- * vectors of them, which then get the same bits.
+ * and the odd powers of s are summed apart, so that neither waits for the other.
  */
-#define STRUT_DEFINE_TRIG(inlined, number, sine, cosine)                                           \
-  inlined number sine(number x) {                                                                  \
-    number s = x * x, ss = s * s;                                                                  \
-    number even =                                                                                  \
-        -1.0 / 6 + ss * (-1.0 / 5040 + ss * (-1.0 / 39916800 + ss * (-1.0 / 1307674368000.0)));    \
-    number odd = 1.0 / 120 + ss * (1.0 / 362880 + ss * (1.0 / 6227020800.0));                      \
-    return x + x * (s * (even + s * odd));                                                         \
-  }                                                                                                \
-  inlined number cosine(number x) {                                                                \
-    number s = x * x, ss = s * s;                                                                  \
-    number even =                                                                                  \
-        1.0 / 24 + ss * (1.0 / 40320 + ss * (1.0 / 479001600.0 + ss * (1.0 / 20922789888000.0)));  \
-    number odd = -1.0 / 720 + ss * (-1.0 / 3628800 + ss * (-1.0 / 87178291200.0));                 \
-    number half = 0.5 * s, rest = 1.0 - half;                                                      \
-    return rest + (((1.0 - rest) - half) + ss * (even + s * odd));                                 \
-  }
-
-STRUT_DEFINE_TRIG(static inline, double, strut_sine_of_small, strut_cosine_of_small)
+static inline double strut_sine_of_small(double x) {
+  double s = x * x, ss = s * s;
+  double even =
+      -1.0 / 6 + ss * (-1.0 / 5040 + ss * (-1.0 / 39916800 + ss * (-1.0 / 1307674368000.0)));
+  double odd = 1.0 / 120 + ss * (1.0 / 362880 + ss * (1.0 / 6227020800.0));
+  return x + x * (s * (even + s * odd));
+}
+static inline double strut_cosine_of_small(double x) {
+  double s = x * x, ss = s * s;
+  double even =
+      1.0 / 24 + ss * (1.0 / 40320 + ss * (1.0 / 479001600.0 + ss * (1.0 / 20922789888000.0)));
+  double odd = -1.0 / 720 + ss * (-1.0 / 3628800 + ss * (-1.0 / 87178291200.0));
+  double half = 0.5 * s, rest = 1.0 - half;
+  return rest + (((1.0 - rest) - half) + ss * (even + s * odd));
+}
 
 /** sine = sin(2 pi turns), cosine = cos(2 pi turns); error below 1.5 units in the last place of 1. */
 static inline void strut_sincos_turns(double turns, double *sine, double *cosine) {

@@ -41,14 +41,11 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
   bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
   bool others = balance && model->terms & terms & ~STRUT_TERMS_IN_LANES;
   for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) state->latest->power[p] = 0.0;
-  strut_drives_ahead drives;
-  drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     if (balance) strut_step_balance_begin(model, state);
     for (int k = 0; k < 4; k++) {
       if (balance) state->latest->accumulated = &state->latest->lanes[strut_weight_side(k)];
-      double step = (double)state->step + ahead[k], t = step * dt;
-      drives_ahead_apply(model, state, &drives, t, step, 0.5, dt, 2 * (end - state->step));
+      double t = ((double)state->step + ahead[k]) * dt;
       forces_kernel(model, state, t, at[k], speed[k], self->a[k], terms, accumulation);
       if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], self->a[k]);
       for (int p = 0; p < STRUT_POWER_COUNT && others; p++)

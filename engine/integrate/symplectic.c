@@ -18,11 +18,8 @@ STRUT_INLINE void euler_steps(const strut_model *model, strut_state *state,
                               unsigned terms, bool balance) {
   double *restrict q = state->q, *restrict v = state->v;
   bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
-  strut_drives_ahead drives;
-  drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
-    double step = (double)state->step, t = step * dt;
-    drives_ahead_apply(model, state, &drives, t, step, 1.0, dt, end - state->step);
+    double t = (double)state->step * dt;
     forces_kernel(model, state, t, q, v, acceleration, terms, balance);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
       state->work[p] += dt * state->latest->power[p];
@@ -91,8 +88,6 @@ STRUT_INLINE void verlet_steps(const strut_model *model, strut_state *state, ver
   double half = 0.5 * dt;
   int32_t n = model->length;
   bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
-  strut_drives_ahead drives;
-  drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     double *a = self->a, *next = self->next;
     for (int32_t i = 0; i < n; i += STRUT_LANES) {
@@ -100,9 +95,8 @@ STRUT_INLINE void verlet_steps(const strut_model *model, strut_state *state, ver
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * (rate + half * bend));
       strut_lanes_store(predicted + i, rate + dt * bend);
     }
-    double step = (double)state->step + 1.0, t = step * dt;
+    double t = ((double)state->step + 1.0) * dt;
     if (moves) strut_support_motion_place(model, state, t, q, predicted);
-    drives_ahead_apply(model, state, &drives, t, step, 1.0, dt, end - state->step);
     forces_kernel(model, state, t, q, predicted, next, terms, balance);
     for (int32_t i = 0; i < n; i += STRUT_LANES)
       strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +

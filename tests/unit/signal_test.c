@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Waveforms against their closed forms, and their rates against differences. */
 #include "engine/scene/signal.h"
-#include "engine/forces/drives/signal_vector.h"
 #include "engine/scene/signal_program.h"
 #include "tests/support/check.h"
 
@@ -123,23 +122,6 @@ TEST(sums_add_values_and_rates) {
     assert_near(value_of(s, 2, t), value_of(s, 0, t) + 2 * value_of(s, 1, t), 1e-14);
     assert_near(rate_of(s, 3, t), 2 * rate_of(s, 0, t) + 2 * rate_of(s, 1, t), 1e-12);
   }
-}
-
-/* Many times at once, in the kernels' whole vectors: sines, sums of them, and sums of other signals too. */
-TEST(many_times_have_the_bits_of_each) {
-  enum { COUNT = 13, ROOM = 16 };
-  const int32_t of_sines[] = {0, 1, 2}, of_both[] = {0, 3}, of_sums[] = {0, 4};
-  strut_signal s[7] = {sine(2, 10, 0.1, 0), sine(-1, 20, 0, 0.25), sine(0.3, 0.7, -4, -1)};
-  s[3] = strut_signal_default(STRUT_SQUARE), s[3].amplitude = 0.5, s[3].frequency = 3;
-  s[4] = sum(of_sines, 3), s[5] = sum(of_both, 2), s[6] = sum(of_sums, 2), s[4].stop = 1.5;
-  for (int32_t index = 0; index < 7; index++)
-    for (int begin = 0; begin < 200; begin++) {
-      double time[ROOM] = {0}, value[ROOM], rate[ROOM];
-      for (int h = 0; h < COUNT; h++) time[h] = 0.01 * begin + 0.0013 * h;
-      signal_at_times(s, index, time, COUNT, value, rate);
-      for (int h = 0; h < COUNT; h++)
-        assert_all(value[h] == value_of(s, index, time[h]), rate[h] == rate_of(s, index, time[h]));
-    }
 }
 
 TEST(rates_are_derivatives) {

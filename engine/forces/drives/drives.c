@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/drives/signal_vector.h"
 #include "engine/forces/history.h"
 #include "engine/forces/strains/strains.h"
 #include "engine/scene/signal_program.h"
@@ -233,19 +232,4 @@ double strut_actuator_force_on(const strut_model *model, const strut_state *stat
     if (table->item[i].member == member && table->item[i].hinge == hinge)
       sum += state->latest->actuator_force[i];
   return sum;
-}
-
-STRUT_CLONES
-static void evaluate_ahead(const strut_model *model, strut_drives_ahead *drives) {
-  const strut_drive_table *table = &model->drives;
-  for (int32_t i = 0; i < table->count; i++)
-    signal_at_times(model->scene->signals, table->signal[i], drives->time, drives->count,
-                    drives->value[i], drives->rate[i]);
-}
-
-void strut_drives_ahead_evaluate(const strut_model *model, strut_drives_ahead *drives,
-                                 int32_t count) {
-  drives->next = 0;
-  drives->count = count;
-  evaluate_ahead(model, drives);
 }

@@ -511,8 +511,6 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
                                  double dt, int64_t count) {
   strut_event_stepper *stepper = workspace;
   if (!stepper->started) strut_event_stepper_restart(model, state, workspace, dt);
-  drives_ahead_begin(model, model->terms & STRUT_TERMS_RARE ? STRUT_TERMS_ALL : STRUT_TERMS_COMMON,
-                     &stepper->drives);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (stepper->formula->advance_until_event && stepper->chatter.at_once == 0 &&
         !model->contacts.surface && !state->watched.observer && !state->watched.rehearsals)
@@ -521,6 +519,5 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
       break;
     take_step(model, state, stepper, dt);
   }
-  stepper->drives.used = false; /* whoever calls may change drives */
   show_contacts(model, state, stepper, stepper->now);
 }

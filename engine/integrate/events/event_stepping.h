@@ -310,7 +310,6 @@ struct strut_event_stepper {
   bool tried;                      /* next is the end of the step that is due */
   strut_event_view *view;          /* NULL: nothing is observed */
   struct strut_implicit *implicit; /* of implicit.c */
-  strut_drives_ahead drives;       /* of methods with one evaluation a step, during a call */
 };
 
 /** Laws that may switch: `count` of them, each by its place in a list. */

@@ -306,9 +306,6 @@ STRUT_INLINE void take(const strut_model *model, const strut_state *state,
   v[0] = stepper->now->v, a[0] = stepper->now->a;
   for (int k = 1; k < end; k++) v[k] = stepper->stage[k], a[k] = stepper->stage[end - 1 + k];
   v[end] = stepper->next->v, a[end] = stepper->next->a;
-  strut_drives_ahead drives;
-  drives_ahead_begin(model, terms, &drives);
-  drives_ahead_stages(model, state, &drives, t, h, ahead, end - 1);
   for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
     stepper->gained[p] = last[0] * h * stepper->now->power[p];
   for (int k = 1; k <= end; k++) {
@@ -317,7 +314,6 @@ STRUT_INLINE void take(const strut_model *model, const strut_state *state,
     if (model->terms & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == end) break;
-    drives_ahead_meet(model, state, &drives, t + ahead[k] * h);
     accelerate_in_modes(model, state, stepper, t + ahead[k] * h, q, v[k], a[k], stepper->next,
                         terms, balance);
     if (stepper->active.closed_count && !stepper->active.all_sliding)

@@ -38,9 +38,6 @@ STRUT_LOOP void take(const strut_model *model, const strut_state *state,
   bool moves = model->terms & terms & STRUT_TERM_SUPPORT_MOTION;
   bool sliding = model->terms & terms & STRUT_TERM_SLIDING_MASS;
   if (moves) strut_support_motion_place(model, state, t + h, stepper->next->q, predicted);
-  if (terms == STRUT_TERMS_COMMON && t == (double)state->step * h)
-    drives_ahead_ends(model, state, &stepper->drives, h);
-  if (terms == STRUT_TERMS_COMMON) drives_ahead_meet(model, state, &stepper->drives, t + h);
   forces_in_modes(model, state, stepper, t + h, stepper->next->q, predicted, terms, balance);
   keep_structure_forces(model, state, stepper->next, balance);
   keep_ground_motion(model, state, stepper->next, terms);
