@@ -193,6 +193,19 @@ TEST(arrivals_that_graze) {
   assert_true(reached > 50 && never > 50);
 }
 
+/* The least of two pulls, which a root has where one of them is 0, lies below the target between two steps. */
+TEST(an_arrival_at_the_kink_of_a_root) {
+  const two_oscillators o = {{102.5404721914456, 296.33626146264874},
+                             {-0.00793031714, -0.0140540826}};
+  static const char quantities[] =
+      "v: {of: sqrt(p.force^2) + sqrt(q.force^2), take: arrival, target: 75.586302 mN},"
+      " w: {of: \"hypot(p.force, 0) + hypot(q.force, 0)\", take: arrival, target: 75.586302 mN}";
+  OWN(strut_setup) setup;
+  OWN(strut_summary) s = run_two(&o, "1 %", 2.678, quantities, &setup);
+  double right = arrival(sum, &o, 2.678, 75.586302e-3);
+  for (int i = 0; i < 2; i++) assert_near(s.measured[i].value, right, s.measured[i].expected);
+}
+
 /* At the maximum to the last digit nobody knows. */
 TEST(a_target_at_the_maximum) {
   const two_oscillators o = {{100, 50}, {0.01, 0.01}};

@@ -180,10 +180,11 @@ static void leave_out(double *values, size_t count, double share, bool magnitude
   if (!(least < (1 - MOST_OF_RANGE) * whole) || !(least > 0)) return;
   *low = core[0], *high = core[1];
   for (size_t i = 0; i < kept; i++) {
-    bool below = values[i]<core[0] - 0.5 * least, above = values[i]> core[1] + 0.5 * least;
+    double value = values[i], margin = 0.5 * least;
+    bool below = core[0] - value > margin, above = value - core[1] > margin;
     beyond->below += below, beyond->above += above;
-    if (!below && !above) *low = fmin(*low, values[i]), *high = fmax(*high, values[i]);
-    if ((below || above) && fabs(values[i]) > fabs(beyond->farthest)) beyond->farthest = values[i];
+    if (!below && !above) *low = fmin(*low, value), *high = fmax(*high, value);
+    if ((below || above) && fabs(value) > fabs(beyond->farthest)) beyond->farthest = value;
   }
 }
 
