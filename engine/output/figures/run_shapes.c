@@ -116,7 +116,7 @@ static const char *describe_period(const strut_run_scene *run, bool grounded) {
 
 const char *strut_run_period(strut_run_scene *run, strut_figure *figure) {
   strut_run_scene other;
-  bool grounded = false, periodic = run->period > 0, ignored;
+  bool grounded = false, periodic = run->period > 0, ignored = false;
   const double *centres = find_anchors(run, &grounded);
   strut_panel *panel = strut_add_panel(figure);
   /* Mean positions are no shape of a large motion: only enlarged paths are drawn over them. */
