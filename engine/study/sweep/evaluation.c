@@ -14,29 +14,24 @@ static int32_t find_node(const strut_scene *scene, const char *name) {
   return strut_thing_find(scene, STRUT_THING_NODE, name);
 }
 
-static strut_status check_node(const strut_scene *scene, const char *key, const char *name,
-                               strut_error *error) {
-  if (!name || find_node(scene, name) >= 0) return STRUT_OK;
-  return strut_fail(error, STRUT_BAD_SCENE, "'%s' of the study: the model has no node '%.60s'", key,
-                    name);
-}
-
 strut_status strut_goals_check(const strut_study *study, const strut_scene *scene,
-                               strut_error *error) {
-  strut_status status = check_node(scene, "stiffness_at", study->goal.stiffness_node, error);
-  for (size_t i = 0; i < study->goal.shape_count && !status; i++)
-    status = check_node(scene, "shape", study->goal.shape_nodes[i], error);
-  if (status || !study->goal.like) return status;
-  const strut_configuration *configuration = strut_configuration_named(scene, study->goal.like);
-  if (!configuration)
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      "'like' of the study: the model has no configuration '%.60s'",
-                      study->goal.like);
-  if (!configuration->shaped)
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      "'like' of the study: configuration '%.60s' gives no positions of its shape",
-                      study->goal.like);
-  return STRUT_OK;
+                               strut_study_fault *fault, strut_error *error) {
+  const char *node = study->goal.stiffness_node, *like = study->goal.like;
+  const strut_configuration *configuration = like ? strut_configuration_named(scene, like) : NULL;
+  const char *lack = "the model has no node";
+  *fault = (strut_study_fault){0};
+  for (size_t i = 0; i < study->goal.shape_count; i++)
+    if (find_node(scene, study->goal.shape_nodes[i]) < 0)
+      *fault = (strut_study_fault){"shape", study->goal.shape_nodes[i]};
+  if (node && find_node(scene, node) < 0) *fault = (strut_study_fault){"stiffness_at", node};
+  if (!fault->key && like && !(configuration && configuration->shaped)) {
+    *fault = (strut_study_fault){"like", like};
+    lack = configuration ? "the model gives no positions for configuration"
+                         : "the model has no configuration";
+  }
+  if (!fault->key) return STRUT_OK;
+  return strut_fail(error, STRUT_BAD_SCENE, "'%s' of the study: %s '%.60s'", fault->key, lack,
+                    fault->name);
 }
 
 /* The i-th pair of a node's place and of the place that is wanted; false: no such node. */

@@ -391,9 +391,8 @@ strut_status strut_statics_check(const strut_study *study, const strut_setup *se
                                  strut_error *error) {
   strut_path_options options;
   const char *unit;
-  strut_status status = strut_goals_check(study, &setup->scene, error);
-  if (status || study->compute != STRUT_COMPUTE_PATH) return status;
-  return choose_path(study, setup, &options, &unit, error);
+  return study->compute == STRUT_COMPUTE_PATH ? choose_path(study, setup, &options, &unit, error)
+                                              : STRUT_OK;
 }
 
 bool strut_kept_columns(strut_sweep_plan *plan, const strut_setup *setup) {

@@ -49,6 +49,11 @@ typedef struct strut_sweep_scenes {
                        size_t count, const double *numbers, strut_setup *setup, strut_error *error);
 } strut_sweep_scenes;
 
+/** What of the study is not in the model: its key, and the name there. Zero: nothing. */
+typedef struct strut_study_fault {
+  const char *key, *name;
+} strut_study_fault;
+
 /** Columns and points of a study's table. Constant once made. */
 typedef struct strut_sweep_plan {
   const strut_study *study;
@@ -73,6 +78,7 @@ typedef struct strut_sweep_plan {
   size_t own_by_count;  /* the first of them, at all points; the others at the medians */
   size_t *derived;      /* (derived_count) columns that are differentiated */
   bool *names_member;   /* (quantity_count) a word beside it: the member of the largest force */
+  strut_study_fault fault; /* why it could not be made */
 } strut_sweep_plan;
 
 /**

@@ -157,15 +157,14 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   const strut_scene *scene = &setup->scene;
   const strut_study *study = plan->study;
   bool usual = strut_keep_is_empty(&study->keep) && !study->quantity_count && !study->follow;
+  strut_status status = strut_goals_check(study, scene, &plan->fault, error);
   if (study->compute == STRUT_COMPUTE_RUN) {
     choose_of_run(plan, setup, usual);
-    strut_status status = strut_goals_check(study, scene, error);
-    if (status) return status;
   } else {
     plan->keep = usual ? strut_statics_usual((strut_compute)study->compute) : study->keep;
-    strut_status status = strut_statics_check(study, setup, error);
-    if (status) return status;
+    if (!status) status = strut_statics_check(study, setup, error);
   }
+  if (status) return status;
   size_t quantities = setup->experiment.quantity_count;
   size_t most = plan->axis_columns + STRUT_KEPT_COLUMNS + 8 + 2 * scene->contact_count +
                 2 * scene->node_count + scene->member_count + 2 * quantities;
@@ -180,7 +179,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
       !add_kept(plan, setup))
     return strut_no_memory(error, "");
   plan->smooth = false;
-  strut_status status = strut_sweep_derivative_columns(plan, setup, values, error);
+  status = strut_sweep_derivative_columns(plan, setup, values, error);
   return status || add_check(plan) ? status : strut_no_memory(error, "");
 }
 

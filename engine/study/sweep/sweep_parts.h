@@ -20,9 +20,9 @@
  * small force at a node meets.
  */
 
-/** Are what the study names there, a node or a configuration with positions? STRUT_BAD_SCENE. */
+/** Are the nodes and the configuration there that the study names? STRUT_BAD_SCENE, with the fault. */
 strut_status strut_goals_check(const strut_study *study, const strut_scene *scene,
-                               strut_error *error);
+                               strut_study_fault *fault, strut_error *error);
 /**
  * Root mean square distance [m] of nodes from the wanted shape after the best rigid motion, which turns
  * and moves the whole but does not mirror it. positions (node_count, 2). NAN: the study wants none, or a

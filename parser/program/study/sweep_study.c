@@ -166,20 +166,16 @@ static strut_status bind_fit(strut_sweep_study *study, strut_error *error) {
   return status;
 }
 
-/* What the study names in the model stands at its key, "'KEY' of the study: ... 'NAME'", and below it the name. */
-static strut_status bind_goals(strut_sweep_study *study, strut_status status, strut_error *error) {
-  char key[40] = "", name[80] = "";
-  const char *last = strrchr(error->message, ' ');
-  if (status != STRUT_BAD_SCENE || sscanf(error->message, "'%39[^']' of the study", key) != 1)
-    return status;
-  const strut_tree *tree = strut_tree_find(study->file.document.root, key, NULL), *at = tree;
-  if (!tree) return status;
-  if (last) sscanf(last, " '%79[^']'", name);
-  for (const strut_tree *part = tree->first; part; part = part->next)
-    if (part->kind == STRUT_TREE_SCALAR && strcmp(part->text, name) == 0) at = part;
+/* Points to the name that the model does not have. */
+static strut_status place_fault(strut_sweep_study *study, strut_error *error) {
+  const strut_study_fault *fault = &study->plan.fault;
+  const strut_tree *key = strut_tree_find(study->file.document.root, fault->key, NULL), *at = key;
+  if (!key) return STRUT_BAD_SCENE;
+  for (const strut_tree *part = key->first; part; part = part->next)
+    if (part->kind == STRUT_TREE_SCALAR && strcmp(part->text, fault->name) == 0) at = part;
   strut_diagnose(&study->file.diagnostics, at->place, "%s", error->message);
   *error = (strut_error){0};
-  return status;
+  return STRUT_BAD_SCENE;
 }
 
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
@@ -190,9 +186,10 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
                                          arguments->override_count, file, error);
   if (!status) status = adjust_scenes(arguments, file);
   if (!status) status = try_ends(file);
-  if (!status)
-    status =
-        bind_goals(study, strut_sweep_plan_make(&file->study, &scenes, &study->plan, error), error);
+  if (!status) {
+    status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
+    if (status && study->plan.fault.key) status = place_fault(study, error);
+  }
   if (!status && file->study.search) status = bind_search(study, error);
   if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
   if (!status && file->study.fit) status = bind_fit(study, error);
