@@ -12,10 +12,9 @@ static int column_of(const strut_table *table, const char *name) {
 
 /* Events that change nothing, and starts, are in the table alone. */
 static bool is_marked(const char *point, const char *changes) {
-  static const char *const kinds[] = {"fold", "period doubling", "torus", "branching", "cusp"};
   bool marked = *point && strcmp(changes, "yes") == 0;
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    marked = marked || strcmp(point, kinds[i]) == 0;
+  for (int kind = STRUT_FOLLOW_CUSP; kind <= STRUT_FOLLOW_TORUS; kind++)
+    marked = marked || strcmp(point, strut_follow_kind_word((strut_follow_kind)kind)) == 0;
   return marked;
 }
 
