@@ -153,10 +153,6 @@ static bool ends_agree(strut_orbit_solve *solve, const strut_summary *one,
          fabs(one->velocity - other->velocity) <= SAME_ORBIT * size;
 }
 
-static bool is_fast(const strut_summary *run) {
-  return run->steady.fastest > FAST * run->steady.motion;
-}
-
 /*
  * A start whose shape changes by far more than the steady motion's, or whose energy the coarse method does not keep, may
  * lead to another steady motion. The reference method then runs from it, until two runs end on the same one.
@@ -165,8 +161,9 @@ static void follow_start(strut_orbit_solve *solve, double periods) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *run = &solve->coarse_run;
   bool open = strut_accuracy_balance_is_open(accuracy, run), agree = false;
-  if (accuracy->creeps) run->steady.fastest = 0.0; /* nothing will be promised */
-  if (solve->status || !(open || is_fast(run))) return;
+  bool fast = run->steady.fastest > FAST * run->steady.motion;
+  if (accuracy->creeps) fast = false; /* nothing will be promised */
+  if (solve->status || !(open || fast)) return;
   create_maps(solve, 1);
   strut_experiment e = solve->reference;
   e.steady.creep = accuracy->coarse.steady.creep;
@@ -183,7 +180,7 @@ static void follow_start(strut_orbit_solve *solve, double periods) {
     e.tolerance = fmax(1e-12, FINER_START * e.tolerance);
   }
   solve->followed = agree && !open;
-  run->steady.fastest = solve->followed ? 0.0 : HUGE_VAL;
+  solve->lost = !solve->followed;
 }
 
 /*
@@ -562,14 +559,14 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   solve.orbit.y = solve.known.y = strut_orbit_solve_array(&solve);
   solve.fixed_point = strut_orbit_solve_array(&solve);
   bool steady = run_coarse(&solve);
-  if (!solve.status && solve.coarse_run.status == STRUT_OK && !is_fast(&solve.coarse_run)) {
+  if (!solve.status && solve.coarse_run.status == STRUT_OK && !solve.lost) {
     if (solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING) steady = find_creep(&solve);
     if (!is_over(&solve)) find_orbit(&solve, steady);
     if (!solve.status) confirm_orbit(&solve, &orbit);
   }
   bool followed =
       orbit.spent.forced + solve.last_run.spent.forced + solve.reference_map.forced == 0;
-  *done = !solve.status && solve.answer && followed && !is_fast(&solve.coarse_run);
+  *done = !solve.status && solve.answer && followed && !solve.lost;
   if (*done) {
     strut_orbit_solve_report(&solve, &orbit);
   } else { /* the next strategy is charged with the cost */

@@ -59,6 +59,7 @@ typedef struct strut_orbit_solve {
   strut_orbit_answer answer;
   bool tightened; /* the reference tolerance was reduced for a sensitive orbit */
   bool followed;  /* the coarse run is one of the reference method: its start was too fast */
+  bool lost;      /* the start was too fast, and runs from it do not agree */
   strut_summary last_run; /* the run that gave the answer, if any */
   strut_arena arena;
   double finer; /* how often the coarse map's step is in the first coarse one [1] */
