@@ -39,7 +39,7 @@ typedef struct strut_fit_estimate {
   bool open_low, open_high;       /* the profile has no end there, or none is known */
   bool at_bound;                  /* the value is an end of its range */
   double from, to;                /* its range */
-  double also; /* of a delay: another one that fits as well; NAN: there is none */
+  double also;                    /* another delay that fits as well; NAN: none does */
   strut_fit_verdict verdict;
 } strut_fit_estimate;
 

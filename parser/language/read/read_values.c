@@ -244,9 +244,7 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
   if (!fine && error.message[0])
     strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s%s", key,
                        strut_owner_text(reader, owner), error.message,
-                       !text                        ? ""
-                       : strchr(error.message, ';') ? " (a text stands in quotes)"
-                                                    : "; a text stands in quotes");
+                       text ? " (put a text in quotes)" : "");
   return fine;
 }
 

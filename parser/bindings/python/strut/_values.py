@@ -205,7 +205,7 @@ def all_parts(channels: Values | None) -> list[str] | None:
 
 
 def unrecorded(name: str, things: Callable[[str], Sequence[str]]) -> str | None:
-    """Why a run has not recorded a channel; None where there is none of that name."""
+    """The reason why a run lacks a channel; None: no channel has that name."""
     kind = next((kind for channel, kind, _, _ in _strut.channels() if name in (channel, channel.split(".")[0])), None)
     if kind is None:
         return None
