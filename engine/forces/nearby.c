@@ -9,11 +9,9 @@
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 
-/* How far nodes may go while a list serves, in parts of the mean distance between nodes. */
-static const double WAYS[STRUT_NEARBY_LISTS] = {0.1, 0.8};
-
-static double way_of(const strut_model *model, int level) {
-  return WAYS[level] * model->size / sqrt((double)model->node_count);
+/* How far nodes may go while the list serves: a part of the mean distance between nodes [m]. */
+static double way_of(const strut_model *model) {
+  return 0.1 * model->size / sqrt((double)model->node_count);
 }
 
 /* The longest way of a node since the list was made [m]. */
@@ -25,12 +23,6 @@ static double way_since(const strut_model *model, const strut_nearby *near, cons
     most = fmax(most, x * x + y * y);
   }
   return sqrt(most);
-}
-
-/* Does the list serve until nodes have gone `more` from q? */
-static bool serves(const strut_model *model, const strut_nearby *near, const double *q, double way,
-                   double more) {
-  return way_since(model, near, q) + more <= way;
 }
 
 /* Is the first node further than `reach` from the box around the others? */
@@ -54,54 +46,34 @@ static bool is_beyond(const strut_model *model, int32_t element, const double *q
 
 bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q, bool soon) {
   const strut_element *e = &model->elements.element[element];
-  if (soon) return is_beyond(model, element, q, way_of(model, 0));
+  if (soon) return is_beyond(model, element, q, way_of(model));
   return e->role == STRUT_ELEMENT_COLLISION &&
          is_outside(model->elements.at + e->first, e->nodes, q, e->natural);
-}
-
-static void make(const strut_model *model, const strut_state *state, const double *q, int level) {
-  strut_nearby *near = &state->nearby[level];
-  const strut_nearby *from = level + 1 < STRUT_NEARBY_LISTS ? near + 1 : NULL;
-  double way = way_of(model, level);
-  int32_t count = from ? from->count : model->elements.count;
-  near->count = 0;
-  for (int32_t k = 0; k < count; k++) {
-    int32_t i = from ? from->element[k] : k;
-    if (!is_beyond(model, i, q, way)) near->element[near->count++] = i;
-  }
-  memcpy(near->q, q, (size_t)model->length * sizeof *q);
-  near->known = true;
-  near->made++;
 }
 
 const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_state *state,
                                          const double *q) {
   if (!model->elements.scattered) return NULL;
-  return serves(model, state->nearby, q, way_of(model, 0), 0.0) ? state->nearby : NULL;
+  return way_since(model, state->nearby, q) <= way_of(model) ? state->nearby : NULL;
 }
 
-/* A list that serves at q and until nodes have gone `more` from there, which is less than the way of the first list. */
-static const strut_nearby *near_within(const strut_model *model, const strut_state *state,
-                                       const double *q, double more) {
+const strut_nearby *strut_nearby_around(const strut_model *model, const strut_state *state,
+                                        const double *q, double way) {
   strut_nearby *near = state->nearby;
-  if (serves(model, near, q, way_of(model, 0), more)) return near;
-  int level = 1; /* the first list that serves for as long as the one below will */
-  while (level < STRUT_NEARBY_LISTS &&
-         !serves(model, &near[level], q, way_of(model, level), way_of(model, level - 1)))
-    level++;
-  while (level-- > 0) make(model, state, q, level);
+  if (way > way_of(model)) return NULL;
+  if (way_since(model, near, q) + way <= way_of(model)) return near;
+  near->count = 0;
+  for (int32_t i = 0; i < model->elements.count; i++)
+    if (!is_beyond(model, i, q, way_of(model))) near->element[near->count++] = i;
+  memcpy(near->q, q, (size_t)model->length * sizeof *q);
+  near->known = true;
+  near->made++;
   return near;
 }
 
 const strut_nearby *strut_nearby_at(const strut_model *model, const strut_state *state,
                                     const double *q) {
-  return near_within(model, state, q, 0.0);
-}
-
-const strut_nearby *strut_nearby_around(const strut_model *model, const strut_state *state,
-                                        const double *q, double way) {
-  if (way > way_of(model, 0)) return NULL;
-  return near_within(model, state, q, way);
+  return strut_nearby_around(model, state, q, 0.0);
 }
 
 int32_t strut_nearby_find(const strut_nearby *near, int32_t element) {
@@ -126,11 +98,9 @@ static double least_of(const strut_model *model, const strut_nearby *list, const
 double strut_nearby_least_gap(const strut_model *model, const strut_state *state, const double *q,
                               int32_t *which) {
   *which = -1;
-  for (int k = 0; k < STRUT_NEARBY_LISTS && model->elements.scattered; k++) {
-    const strut_nearby *list = &state->nearby[k];
-    double others = 2.0 * (way_of(model, k) - way_since(model, list, q));
-    double least = others > 0.0 ? least_of(model, list, q, which) : HUGE_VAL;
-    if (least <= others) return least;
-  }
-  return least_of(model, NULL, q, which);
+  double others = model->elements.scattered
+                      ? 2.0 * (way_of(model) - way_since(model, state->nearby, q))
+                      : -HUGE_VAL;
+  double least = others > 0.0 ? least_of(model, state->nearby, q, which) : HUGE_VAL;
+  return least <= others ? least : least_of(model, NULL, q, which);
 }

@@ -26,7 +26,7 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
 #define STRUT_STATE_ARRAYS(ARRAY)                                                                  \
   ARRAY(latest, 1)                                                                                 \
   ARRAY(buffers, 1)                                                                                \
-  ARRAY(nearby, STRUT_NEARBY_LISTS)                                                                \
+  ARRAY(nearby, 1)                                                                                 \
   ARRAY(q, model->length)                                                                          \
   ARRAY(v, model->length)                                                                          \
   ARRAY(modes.slack_length_threshold, model->members.slots)                                        \
@@ -55,10 +55,8 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   ARRAY(latest->normal, model->contacts.count)                                                     \
   ARRAY(latest->friction, model->contacts.count)                                                   \
   ARRAY(latest->sliding, model->sliding.moving_count)                                              \
-  ARRAY(nearby[0].element, model->elements.scattered ? model->elements.count : 0)                  \
-  ARRAY(nearby[1].element, model->elements.scattered ? model->elements.count : 0)                  \
-  ARRAY(nearby[0].q, model->elements.scattered ? model->length : 0)                                \
-  ARRAY(nearby[1].q, model->elements.scattered ? model->length : 0)                                \
+  ARRAY(nearby->element, model->elements.scattered ? model->elements.count : 0)                    \
+  ARRAY(nearby->q, model->elements.scattered ? model->length : 0)                                  \
   ARRAY(buffers->mass_solve, model->length)                                                        \
   ARRAY(buffers->support_rates, model->support_motion.count)                                       \
   ARRAY(buffers->support_answer, answers_supports(model) ? model->length : 0)                      \
@@ -105,7 +103,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   state->trouble = STRUT_FAILURE_NONE;
   state->latest->drive_time = (double)NAN;
   state->time_offset = 0.0;
-  for (int k = 0; k < STRUT_NEARBY_LISTS; k++) state->nearby[k].known = false;
+  state->nearby->known = false;
   state->refined_until = -HUGE_VAL;
   memcpy(state->q, model->start, both);
   memcpy(state->v, model->velocity, both);

@@ -155,7 +155,6 @@ typedef struct strut_nearby {
   bool known;              /* made since the reset */
   int64_t made;            /* how often, ever */
 } strut_nearby;
-enum { STRUT_NEARBY_LISTS = 2 };
 
 /** Room that evaluations use and leave without meaning. */
 typedef struct strut_state_buffers {
@@ -207,7 +206,7 @@ typedef struct strut_state {
   /* what evaluations of the forces write, whose state is constant */
   strut_latest *latest;
   strut_state_buffers *buffers;
-  strut_nearby *nearby; /* (STRUT_NEARBY_LISTS) the nearest first; only with elements.scattered */
+  strut_nearby *nearby;      /* only with elements.scattered */
   struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
   strut_arena arena;
 } strut_state;

@@ -228,10 +228,9 @@ typedef struct strut_contact_bodies {
   double *settling_time; /* relaxation time of a closed contact [s] */
   int32_t *body;         /* equal where a force on one accelerates the other */
   int passes;            /* sweeps over normal and tangent where they are coupled by M */
-  struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */
-  bool *body_seen;                         /* scratch */
-  double *damped;  /* scratch: damper force while it is being solved for [N] */
-  double *scatter; /* (length) scratch, zero between uses */
+  bool *body_seen;       /* scratch */
+  double *damped;        /* scratch: damper force while it is being solved for [N] */
+  double *scatter;       /* (length) scratch, zero between uses */
 } strut_contact_bodies;
 
 /** Cables, elements and relays that switch, cables first. */

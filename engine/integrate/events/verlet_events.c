@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Velocity Verlet between events: one evaluation a step, implicit ground dampers, shorter steps after a touchdown. */
-#include "engine/integrate/events/contacts/contact_coupling.h"
-
 #include "engine/integrate/events/contacts/implicit_ground.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/integrator.h"
@@ -54,10 +52,7 @@ STRUT_LOOP void take(const strut_model *model, const strut_state *state,
                        stepper->next, terms);
     divide_by_mass(model, state, a1, terms);
     if (sliding) strut_refresh_compliances(model, state, stepper);
-    if (stepper->contacts.coupling)
-      strut_contact_coupling_ground(model, stepper, h, a1);
-    else
-      implicit_ground_together(model, stepper, h, a1, terms);
+    implicit_ground_together(model, stepper, h, a1, terms);
   }
   correct(n, h, stepper->now->v, stepper->now->a, a1, stepper->next->v);
   if (moves) strut_support_motion_place(model, state, t + h, stepper->next->q, stepper->next->v);

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/base/indices.h"
-#include "engine/integrate/events/contacts/contact_coupling.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/algebra/dense_cholesky.h"
 
@@ -13,8 +12,6 @@
 static const double NEGLIGIBLE = 1e-18;
 /* Sets of stuck contacts above this size are solved for by sweeps, without a matrix. */
 enum { LARGEST_FACTOR = 512 };
-/* So many stuck contacts push column by column; more of them by one solution with the mass matrix. */
-enum { FEW_COLUMNS = 16 };
 /* Steps are not made shorter than by this on a contact's account: its damper is implicit anyway. */
 static const double MOST_REFINED = 64.0;
 
@@ -194,8 +191,7 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   active->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *active->sliding);
   if (!active->factor || !active->work || !contacts->body_seen || !active->sliding)
     return STRUT_NO_MEMORY;
-  strut_status status = strut_contact_coupling_create(model, state, stepper);
-  return status ? status : find_bodies(model, stepper);
+  return find_bodies(model, stepper);
 }
 
 STRUT_INLINE void push(const strut_contact_compliance *compliance, const strut_contact_axes *axes,
@@ -285,13 +281,6 @@ static void list_sliding_contacts(const strut_model *model, strut_event_stepper 
   }
 }
 
-static void factor_matrix(const strut_model *model, strut_event_stepper *stepper) {
-  if (stepper->contacts.coupling)
-    strut_contact_coupling_factor(model, stepper);
-  else
-    factor_stuck(model, stepper, NULL);
-}
-
 void strut_update_active_set(const strut_model *model, strut_event_stepper *stepper) {
   const strut_contact_bodies *contacts = &stepper->contacts;
   strut_active_set *active = &stepper->active;
@@ -313,7 +302,7 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *step
   if (active->stuck_count > active->stuck_room)
     active->stuck_count = -active->stuck_count;
   else if (active->stuck_count > 1 && !model->contacts.surface && !has_moving_masses(model))
-    factor_matrix(model, stepper);
+    factor_stuck(model, stepper, NULL);
 }
 
 /* Rate of the sliding speed of a contact under the accelerations x. */
@@ -386,18 +375,13 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *step
     x[k] = -along(contacts, stepper->active.stuck[k], acceleration, frame);
   if (n == 1) {
     x[0] /= tangent_compliance(stepper, stepper->active.stuck[0], frame);
-  } else if (stepper->contacts.coupling) {
-    strut_contact_coupling_solve(stepper, x);
   } else {
     strut_cholesky_solve(n, stepper->active.factor, x);
   }
-  bool together = stepper->contacts.coupling && !model->mass->diagonal && n > FEW_COLUMNS;
-  if (together) strut_contact_coupling_push(model, stepper, x, acceleration);
   for (int32_t k = 0; k < n; k++) {
     int32_t i = stepper->active.stuck[k];
-    if (!together)
-      push(&stepper->contacts.compliance[i], strut_axes_of_contact(contacts, frame, i), 0.0, x[k],
-           acceleration);
+    push(&stepper->contacts.compliance[i], strut_axes_of_contact(contacts, frame, i), 0.0, x[k],
+         acceleration);
     end->touch[i].friction += x[k];
     still(contacts, i, acceleration, frame);
   }
