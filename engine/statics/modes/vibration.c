@@ -326,11 +326,10 @@ strut_status strut_modes_solver_create(const strut_vibration *vibration, strut_m
   *solver = (strut_modes_solver){.v = vibration, .sum = *vibration->shape->pattern};
   solver->sum.value = strut_arena_allocate(&solver->arena, entries, sizeof(double));
   if (!solver->sum.value) return strut_no_memory(error, "");
-  return strut_ldl_create(vibration->shape->pattern, &solver->ldl, error);
+  return strut_ldl_create(vibration->shape->pattern, &solver->arena, &solver->ldl, error);
 }
 
 void strut_modes_solver_free(strut_modes_solver *solver) {
-  strut_ldl_free(solver->ldl);
   strut_arena_free(&solver->arena);
   *solver = (strut_modes_solver){0};
 }
@@ -349,7 +348,6 @@ void strut_modes_factorise(strut_modes_solver *solver, double shift) {
     shift *= 1.0 + 1e-3;
   }
   if (status != STRUT_OK) solver->inertia.smallest = 0.0;
-  if (status == STRUT_NO_MEMORY) solver->no_memory = true;
 }
 
 void strut_modes_solve(strut_modes_solver *solver, double *vector) {
