@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/model/algebra/cholmod_factor.h"
 #include "engine/model/algebra/hot.h"
 
@@ -331,14 +332,6 @@ static bool find_definite_shift(strut_ldl *ldl, const strut_sparse *matrix, doub
   return count >= 0 && count_below(ldl, matrix, &high) >= 0;
 }
 
-/* A number from -1 to 1 that depends on the index only. */
-static double pseudo_random(uint64_t i) {
-  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
-}
-
 /* Scales x to length 1; false where it is zero or not finite. */
 static bool normalise(double *vector, int32_t n) {
   double most = 0.0, sum = 0.0;
@@ -355,7 +348,7 @@ double strut_ldl_lowest(strut_ldl *ldl, const strut_sparse *matrix, double least
   int32_t n = matrix->n;
   double shift = least, value = 0.0;
   if (count_below(ldl, matrix, &shift) <= 0 || !find_definite_shift(ldl, matrix, least)) return 0.0;
-  for (int32_t i = 0; i < n; i++) vector[i] = pseudo_random((uint64_t)i);
+  for (int32_t i = 0; i < n; i++) vector[i] = strut_stirred((uint64_t)i);
   for (int turn = 0; turn < ITERATIONS; turn++) {
     if (!normalise(vector, n)) return 0.0;
     strut_ldl_solve(ldl, vector);

@@ -17,14 +17,6 @@ static void move(strut_vibration *vibration, double *positions, const double *st
   strut_vibration_update(vibration);
 }
 
-/* -1 to 1, from an index. */
-static double stirred(uint64_t i) {
-  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
-}
-
 /* Last bits of a strain and of its natural one, and, in a shape that is not at rest, of the positions it is made of. */
 static double bits_of(const strut_vibration *vibration, const strut_force *force, bool at_rest) {
   const strut_element_pose *pose = &force->pose;
@@ -58,9 +50,9 @@ static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, 
     bool acts = strut_vibration_force_at(vibration, i, &force);
     uint64_t own = (uint64_t)force.index, first = sample * members;
     if (force.kind == STRUT_FORCE_ELEMENT) first = SAMPLES * members + sample * elements;
-    noise[i] =
-        acts ? -force.pose.slope * (bits_of(vibration, &force, at_rest) * stirred(first + own))
-             : 0.0;
+    noise[i] = acts ? -force.pose.slope *
+                          (bits_of(vibration, &force, at_rest) * strut_stirred(first + own))
+                    : 0.0;
     for (int32_t k = 0; k < 2 * force.nodes && at_rest && acts; k++) {
       int32_t row = vibration->shape->row_of[strut_force_coordinate(&force, k)];
       if (row >= 0) vector[row] -= noise[i] * force.pose.b[k];

@@ -159,8 +159,8 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
  */
 
 typedef struct strut_climber strut_climber;
-/** For one thread at a time. NULL: out of memory. */
-strut_climber *strut_climber_create(const strut_potential *potential);
+/** For one thread at a time; the minimiser of the same potential polishes the ends. NULL: out of memory. */
+strut_climber *strut_climber_create(const strut_potential *potential, strut_minimiser *minimiser);
 /** Hessians decomposed so far: a measure of the work done. */
 int64_t strut_climber_hessian_count(const strut_climber *climber);
 void strut_climber_free(strut_climber *climber);
