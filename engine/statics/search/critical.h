@@ -26,6 +26,7 @@ typedef struct strut_critical_set {
   int64_t unmet;                /* minima found that no random start met: their basins are small */
   int64_t unseen;               /* at least as many more minima exist, at 95 % */
   bool cut_short; /* the structure is too large for as many starts and climbs as it asks for */
+  bool climbs;    /* saddles were looked for */
   strut_arena arena;
 } strut_critical_set;
 
