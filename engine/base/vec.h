@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Vectors of the plane, sums over arrays, and the constants of angles.
+ * Vectors of the plane, sums over arrays, the constants of angles, and numbers that look random.
  *
  * Lengths are roots of sums of squares, never hypot: that has the same bits on every machine, and the
  * check of scenes keeps coordinates far from where squares overflow.
@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define STRUT_PI 3.14159265358979323846
 /** A full turn [rad]. */
@@ -100,4 +101,16 @@ static inline void strut_sincos_turns(double turns, double *sine, double *cosine
   double first = quadrant & 1 ? c : s, second = quadrant & 1 ? s : c;
   *sine = quadrant & 2 ? -first : first;
   *cosine = (quadrant + 1) & 2 ? -second : second;
+}
+
+/** Bits that look random: the last steps of SplitMix64. */
+static inline uint64_t strut_mix_bits(uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/** -1 to 1, from an index: entries of a vector that leans on no motion. */
+static inline double strut_stirred(uint64_t i) {
+  return (double)(strut_mix_bits((i + 1) * 0x9e3779b97f4a7c15u) >> 11) * 0x1p-52 - 1.0;
 }

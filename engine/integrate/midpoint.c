@@ -16,12 +16,12 @@ typedef struct strut_midpoint_matrix {
   int32_t n;           /* free coordinates */
   int32_t *coordinate; /* (n) where they stand in coordinate arrays */
   strut_sparse *matrix;
-  double *mass;           /* M at the matrix's places */
-  int32_t *place;         /* (members and elements) into its values; -1 where supported */
-  strut_refactor *factor; /* NULL where nothing is free */
-  double *lightness;      /* (members) inverse masses of their free ends, added [1/kg] */
-  strut_vec2 *direction;  /* (members) that the factor was made with */
-  double *slope;          /* (members) likewise */
+  double *mass;          /* M at the matrix's places */
+  int32_t *place;        /* (members and elements) into its values; -1 where supported */
+  strut_ldl *factor;     /* NULL where nothing is free */
+  double *lightness;     /* (members) inverse masses of their free ends, added [1/kg] */
+  strut_vec2 *direction; /* (members) that the factor was made with */
+  double *slope;         /* (members) likewise */
 } strut_midpoint_matrix;
 
 static void add_masses(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
@@ -86,8 +86,7 @@ static bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *
   if (!make_pattern(model, row_of, arena, matrix)) return false;
   size_t entries = (size_t)matrix->matrix->start[matrix->n];
   matrix->mass = strut_arena_allocate(arena, entries, sizeof *matrix->mass);
-  matrix->factor = strut_refactor_create(matrix->matrix, arena);
-  if (!matrix->mass || !matrix->factor) return false;
+  if (!matrix->mass || strut_ldl_create(matrix->matrix, arena, &matrix->factor, NULL)) return false;
   memcpy(matrix->mass, matrix->matrix->value, entries * sizeof *matrix->mass);
   strut_tangent_find_places(model, row_of, false, matrix->matrix, matrix->place);
   return true;
@@ -146,7 +145,10 @@ static bool strut_midpoint_matrix_update(const strut_model *model,
       add_member(model, step, j, clip ? fmax(tension[j], 0.0) : tension[j], matrix);
     for (int32_t i = 0; i < model->elements.count; i++)
       add_element(model, step, i, rest, positions, clip, matrix);
-    if (strut_refactor_apply(matrix->factor, matrix->matrix) < 0) return true;
+    strut_inertia inertia;
+    if (!strut_ldl_factorise(matrix->factor, matrix->matrix, 0.0, &inertia) &&
+        inertia.negative == 0)
+      return true;
     if (clip) return false;
   }
 }
@@ -389,14 +391,14 @@ static bool iterate(const strut_model *model, const strut_state *state,
     bool fresh =
         missing || strut_midpoint_matrix_stale(model, &workspace->step, &workspace->matrix);
     if (fresh && !renew(model, state, workspace, stiff)) return false;
-    strut_refactor_solve(workspace->matrix.factor, workspace->x);
+    strut_ldl_solve(workspace->matrix.factor, workspace->x);
     double size = size_of(&workspace->matrix, workspace->x),
            close = rounding_of(model, state, workspace);
     if (turn > 0 && size > SLOW * before && size > CLOSE * close) {
       if (size <= STALLED * close && size > 0.5 * before && workspace->states_settled) return true;
       if (!fresh && !renew(model, state, workspace, stiff)) return false;
       memcpy(workspace->x, workspace->residual, bytes);
-      strut_refactor_solve(workspace->matrix.factor, workspace->x);
+      strut_ldl_solve(workspace->matrix.factor, workspace->x);
       size = size_of(&workspace->matrix, workspace->x);
       part = size > 2.0 * before ? fmax(0.5 * part, 1.0 / 64.0) : fmin(1.0, 2.0 * part);
     } else {

@@ -299,10 +299,6 @@ void strut_relaxation_free(strut_relaxation *relaxation) {
 
 /* Part of the largest stiffness that rounding may give a motion without stiffness. */
 static const double ROUNDING = 1e-12;
-/* Relative accuracy of the shift that makes the matrix definite, and steps of inverse iteration. */
-static const double SHIFT_ACCURACY = 0.01;
-enum { ITERATIONS = 40 };
-
 /* The most unstable direction of an equilibrium. */
 typedef struct instability {
   int32_t node;       /* that moves most; -1: the equilibrium is not unstable */
@@ -310,64 +306,6 @@ typedef struct instability {
   double growth_rate; /* [1/s] */
   double *direction;  /* (length) 1 where the node moves; of the arena; NULL where not unstable */
 } instability;
-
-typedef struct shifted_matrix {
-  const strut_sparse *matrix;
-  strut_ldl *ldl;
-  strut_status status;
-} shifted_matrix;
-
-/*
- * Counts the negative eigenvalues of the matrix plus shift; moves a shift that hits an eigenvalue a
- * little.
- */
-static int32_t count_negative(shifted_matrix *self, double *shift) {
-  strut_inertia inertia = {0};
-  for (int i = 0; i < 4; i++, *shift *= 1.001) {
-    self->status = strut_ldl_factorise(self->ldl, self->matrix, *shift, &inertia);
-    if (self->status != STRUT_SINGULAR) break;
-  }
-  return self->status ? 0 : inertia.negative;
-}
-
-/*
- * Finds approximately the smallest shift that makes the matrix positive definite, and factorises it
- * there.
- */
-static double find_definite_shift(shifted_matrix *self, double low) {
-  double high = low;
-  do {
-    low = high;
-    high *= 16.0;
-  } while (count_negative(self, &high) > 0 && isfinite(high) && !self->status);
-  while (high - low > SHIFT_ACCURACY * high && !self->status) {
-    double middle = sqrt(low * high);
-    if (count_negative(self, &middle) > 0)
-      low = middle;
-    else
-      high = middle;
-  }
-  count_negative(self, &high);
-  return high;
-}
-
-/* A number from -1 to 1 that depends on the index only. */
-static double pseudo_random(uint64_t i) {
-  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
-}
-
-/* Scales x to length 1; false where it is zero or not finite. */
-static bool normalise(double *vector, int32_t n) {
-  double most = 0.0, sum = 0.0;
-  for (int32_t i = 0; i < n; i++) most = fmax(most, fabs(vector[i]));
-  if (!(most > 0.0) || !isfinite(most)) return false;
-  for (int32_t i = 0; i < n; i++) vector[i] /= most, sum += vector[i] * vector[i];
-  for (int32_t i = 0; i < n; i++) vector[i] /= sqrt(sum);
-  return true;
-}
 
 /* Row of a coordinate, or -1 where it is fixed. */
 static int32_t find_row(const strut_tangent *tangent, int32_t coordinate) {
@@ -427,24 +365,6 @@ static void describe_direction(const strut_model *model, const strut_tangent *ta
   found->growth_rate = inertia > 0.0 ? sqrt(-found->stiffness / inertia) : 0.0;
 }
 
-/* Finds the lowest eigenvector by inverse iteration with the shifted matrix. */
-static void find_unstable_direction(shifted_matrix *self, const strut_model *model,
-                                    const strut_tangent *tangent, double least, double *vector,
-                                    double *product, instability *found) {
-  int32_t n = tangent->n;
-  find_definite_shift(self, least);
-  for (int32_t i = 0; i < n; i++) vector[i] = pseudo_random((uint64_t)i);
-  for (int turn = 0; turn < ITERATIONS && !self->status; turn++) {
-    if (!normalise(vector, n)) return;
-    strut_ldl_solve(self->ldl, vector);
-  }
-  if (self->status || !normalise(vector, n)) return;
-  strut_sparse_multiply(self->matrix, vector, product);
-  found->stiffness = 0.0;
-  for (int32_t i = 0; i < n; i++) found->stiffness += vector[i] * product[i];
-  if (found->stiffness < -0.5 * least) describe_direction(model, tangent, vector, found);
-}
-
 /*
  * Counts the negative eigenvalues of the tangent stiffness at q by Sylvester's law of inertia,
  * touching contacts closed, and held along the ground where they stick. Motions without stiffness,
@@ -456,7 +376,7 @@ static strut_status find_instability(const strut_model *model, double accelerati
                                      instability *found, strut_error *error) {
   strut_arena scratch = {0};
   strut_tangent tangent;
-  shifted_matrix s = {.status = STRUT_OK};
+  strut_ldl *ldl = NULL;
   *found = (instability){.node = -1};
   strut_status status = strut_tangent_assemble(model, positions, model->members.rest,
                                                STRUT_CLOSED_TOUCHING, &scratch, &tangent);
@@ -468,16 +388,14 @@ static strut_status find_instability(const strut_model *model, double accelerati
   }
   if (status) strut_fail(error, status, "out of memory");
   if (!status && tangent.n > 0) {
-    s.matrix = tangent.stiffness;
     add_stick_stiffness(model, positions, &tangent);
-    double least = find_stiffness_threshold(model, acceleration, s.matrix), shift = least;
-    status = strut_ldl_create(s.matrix, &s.ldl, error);
-    if (!status && least > 0.0 && isfinite(least) && count_negative(&s, &shift) > 0)
-      find_unstable_direction(&s, model, &tangent, least, x, x + tangent.n, found);
-    if (s.status == STRUT_NO_MEMORY) status = strut_no_memory(error, "");
+    double least = find_stiffness_threshold(model, acceleration, tangent.stiffness);
+    status = strut_ldl_create(tangent.stiffness, &scratch, &ldl, error);
+    if (!status && least > 0.0 && isfinite(least))
+      found->stiffness = strut_ldl_lowest(ldl, tangent.stiffness, least, x, x + tangent.n);
+    if (found->stiffness < -0.5 * least) describe_direction(model, &tangent, x, found);
   }
   if (found->node < 0) *found = (instability){.node = -1};
-  strut_ldl_free(s.ldl);
   strut_arena_free(&scratch);
   return status;
 }

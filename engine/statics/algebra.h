@@ -28,36 +28,6 @@
 STRUT_API bool strut_eigen(double *matrix, int32_t n, double *value, double *work);
 
 /**
- * A symmetric matrix H = Q T Q' with tridiagonal T, the first half of strut_eigen and a fifth of its
- * work: enough for steps by (H + shift)^-1 with any number of shifts.
- */
-typedef struct strut_tridiagonal {
-  int32_t n;
-  double *z; /* (n, n) H, then the reflections of Q, then eigenvectors, one per row */
-  double *diagonal, *beside; /* (n) of T; beside[i] joins i and i + 1 */
-  double bound;              /* no |eigenvalue| is larger */
-  double *pivot, *ratio;     /* (n) L D L' of T + shift */
-  double *height, *work;     /* (n) of the reflections */
-  int power;                 /* z was scaled by 2^-power */
-} strut_tridiagonal;
-
-/** False: out of memory. */
-STRUT_API bool strut_tridiagonal_create(strut_tridiagonal *tridiagonal, int32_t n,
-                                        strut_arena *arena);
-/** z, symmetric and finite, becomes Q and T. */
-STRUT_API void strut_tridiagonal_reduce(strut_tridiagonal *tridiagonal);
-/** Once after each reduction: what strut_eigen computes, eigenvectors in z. T remains, Q does not. */
-STRUT_API bool strut_tridiagonal_eigen(strut_tridiagonal *tridiagonal, double *value);
-/** x (n) becomes Q'x, or Qx. */
-STRUT_API void strut_tridiagonal_enter(const strut_tridiagonal *tridiagonal, double *vector);
-STRUT_API void strut_tridiagonal_leave(const strut_tridiagonal *tridiagonal, double *vector);
-/** Factors T + shift; returns how many eigenvalues of H lie below -shift. */
-STRUT_API int32_t strut_tridiagonal_factor(strut_tridiagonal *tridiagonal, double shift);
-/** x'(T + shift)^-1 x; x becomes (T + shift)^-1 x. */
-STRUT_API double strut_tridiagonal_form(const strut_tridiagonal *tridiagonal, const double *vector);
-STRUT_API void strut_tridiagonal_solve(const strut_tridiagonal *tridiagonal, double *vector);
-
-/**
  * Of matrix (n, n), which it overwrites: value (n) ascending, and the unit vector of value i as row
  * i of vector (n, n), its largest entry positive. False: out of memory.
  */
@@ -186,22 +156,14 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
 void strut_spectrum_free(strut_spectrum_workspace *room);
 
 /**
- * Reduces the Hessian at q, valid until the next call of a function of this room. *singular: some
- * eigenvalue may be all rounding, and steps need the modes. False if the Hessian is not finite.
- */
-bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q,
-                           strut_tridiagonal **tridiagonals, bool *singular);
-/** The spectrum of what was reduced last, at q; not refined if it was not singular, without q then. */
-bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool careful,
-                           strut_spectrum *spectrum);
-
-/**
  * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`:
  * noise is estimated mode by mode and soft modes are always refined; else only where the dense
  * solver's error could matter, with one noise for all. False if the Hessian is not finite.
  */
 bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
                             bool careful, strut_spectrum *spectrum);
+/** Eigenvalues up to this may be all rounding, where none is larger than `largest`. */
+double strut_spectrum_noise(const strut_spectrum_workspace *room, double largest);
 
 /* Steps put together from modes. Arrays are (n). */
 

@@ -10,7 +10,7 @@
 #include "engine/statics/algebra.h"
 
 /* |x| for the multiplier mu, and d|x|/dmu; mu lies above minus the lowest value. */
-static double step_length_at(const void *quadratic, double mu, double *slope) {
+static double step_length_at(void *quadratic, double mu, double *slope) {
   const strut_quadratic *r = quadratic;
   double square = 0.0, cube = 0.0;
   for (int32_t i = 0; i < r->n; i++) {
@@ -24,14 +24,17 @@ static double step_length_at(const void *quadratic, double mu, double *slope) {
   return length;
 }
 
+/* Errors of a step's length, relative: of one from modes, and of one from factors, each of which takes time. */
+static const double CLOSE = 1e-6, ROUGH = 1e-4;
+
 /* The multiplier at which |x| is the radius, between low (too long a step there) and high. */
-static double solve_secular(double (*step_length)(const void *r, double mu, double *slope),
-                            const void *r, double low, double high, double radius) {
+static double solve_secular(double (*step_length)(void *r, double mu, double *slope), void *r,
+                            double low, double high, double radius, double error) {
   double mu = low > 0 ? low * (1.0 + 1e-12) : low;
-  for (int i = 0; i < 80 && high - low > 1e-14 * high; i++) {
+  for (int i = 0; i < 80 && high - low > 0.01 * error * error * high; i++) {
     if (!(mu > low && mu < high)) mu = low > 0 ? 0.5 * (low + high) : 1e-3 * high;
     double slope, length = step_length(r, mu, &slope);
-    if (fabs(length - radius) <= 1e-6 * radius) return mu;
+    if (fabs(length - radius) <= error * radius) return mu;
     if (length > radius)
       low = mu;
     else
@@ -53,132 +56,181 @@ static double shares_at(const strut_quadratic *quadratic, double mu, double *vec
 double strut_trust_step(const strut_quadratic *quadratic, double radius, double *vector) {
   assert(radius > 0.0);
   double size = 0.0, slope;
+  strut_quadratic own = *quadratic;
   int32_t low = -1;
-  for (int32_t i = 0; i < quadratic->n; i++) {
-    if (quadratic->idle[i]) continue;
-    if (low < 0 || quadratic->value[i] < quadratic->value[low]) low = i;
-    size += quadratic->part[i] * quadratic->part[i];
+  for (int32_t i = 0; i < own.n; i++) {
+    if (own.idle[i]) continue;
+    if (low < 0 || own.value[i] < own.value[low]) low = i;
+    size += own.part[i] * own.part[i];
   }
   size = sqrt(size);
-  if (low < 0) return shares_at(quadratic, 0.0, vector); /* no mode has a force */
-  double lowest = quadratic->value[low];
-  double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * quadratic->scale + 1e-300 : 0.0);
-  double length = step_length_at(quadratic, floor, &slope);
+  if (low < 0) return shares_at(&own, 0.0, vector); /* no mode has a force */
+  double lowest = own.value[low];
+  double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * own.scale + 1e-300 : 0.0);
+  double length = step_length_at(&own, floor, &slope);
   if (length > radius)
-    return shares_at(quadratic,
-                     solve_secular(step_length_at, quadratic, floor, floor + size / radius, radius),
-                     vector);
-  shares_at(quadratic, floor, vector);
-  if (lowest > -quadratic->noise) return floor;
+    return shares_at(
+        &own, solve_secular(step_length_at, &own, floor, floor + size / radius, radius, CLOSE),
+        vector);
+  shares_at(&own, floor, vector);
+  if (lowest > -own.noise) return floor;
   double rest = sqrt(fmax(radius * radius - length * length, 0.0)); /* the hard case */
-  vector[low] += quadratic->part[low] > 0 ? -rest : rest;
+  vector[low] += own.part[low] > 0 ? -rest : rest;
   return floor;
 }
 
 /*
- * Exact trust-region steps in the basis of the Hessian's tridiagonal form, for a quarter of the work
- * of its eigenvectors. These serve where it is singular, so that motions without stiffness are left
+ * Steps by an L D L' factor of the Hessian, shifted until they are as long as the radius. Up to
+ * STRUT_DENSE_STATICS coordinates its modes serve where it is singular, so that motions without stiffness are left
  * alone, where the lowest one is needed, and where there are so few that they cost next to nothing.
  */
 enum { FEW_MODES = 20 };
 
-typedef struct dense_curvature {
-  strut_spectrum_workspace *spectra;
-  strut_tridiagonal *reduced;
-  bool has_modes; /* `now` is filled, and `reduced` has lost its reflections */
-  strut_spectrum now;
-  double *part, *x; /* (n) the gradient and the step in the modes, or in the basis of T */
-  uint8_t *idle;    /* (n) modes to leave alone */
-  strut_arena arena;
-  double scale;      /* largest |eigenvalue| */
-  double multiplier; /* of the step that descend gave last */
-} dense_curvature;
+/* Pivots of this share of their diagonal are rounding: neither their size nor their sign counts. */
+static const double NOISE = 32 * DBL_EPSILON;
 
-static void dense_free(void *memory) {
-  dense_curvature *curvature = memory;
+struct strut_curvature {
+  const strut_potential *potential;
+  strut_sparse *hessian;
+  double *known;  /* (nonzeros) the Hessian decomposed last */
+  double scale;   /* no |eigenvalue| is larger */
+  strut_ldl *ldl; /* NULL: there are few coordinates */
+  strut_inertia inertia;
+  double shift;                      /* of the factor at hand; NAN: there is none */
+  strut_spectrum_workspace *spectra; /* NULL: there are too many coordinates for modes */
+  const double *q;                   /* where it was decomposed last; NULL before */
+  bool has_modes;                    /* `now` is filled */
+  strut_spectrum now;
+  const double *gradient; /* of the step at hand */
+  double *part, *x;       /* (n) the gradient and the step in the modes; or scratch, and the step */
+  uint8_t *idle;          /* (n) modes to leave alone */
+  double multiplier;      /* of the step that strut_curvature_trust_step gave last */
+  double border;          /* between soft and stiff modes for it; NAN: not known yet */
+  strut_arena arena;
+};
+
+void strut_curvature_free(strut_curvature *curvature) {
   if (!curvature) return;
   strut_spectrum_free(curvature->spectra);
   strut_arena_free(&curvature->arena);
   strut_release(curvature);
 }
 
-static void *dense_create(const strut_potential *potential) {
-  dense_curvature *curvature = strut_allocate(1, sizeof *curvature);
-  if (!curvature) return NULL;
-  curvature->spectra = strut_spectrum_create(potential);
+strut_status strut_curvature_create(const strut_potential *potential, strut_curvature **curvature,
+                                    strut_error *error) {
+  strut_curvature *c = *curvature = strut_allocate(1, sizeof *c);
+  if (!c) return strut_no_memory(error, "");
   size_t n = (size_t)potential->n;
-  curvature->idle = strut_arena_allocate(&curvature->arena, n, sizeof *curvature->idle);
-  if (curvature->spectra && curvature->idle &&
-      STRUT_NUMBERS(&curvature->arena, n, &curvature->part, &curvature->x))
-    return curvature;
-  dense_free(curvature);
-  return NULL;
+  bool modes = potential->n <= STRUT_DENSE_STATICS;
+  c->potential = potential;
+  c->shift = (double)NAN;
+  c->hessian = strut_potential_matrix(potential, &c->arena);
+  bool good = c->hessian && STRUT_ALLOCATE(&c->arena, STRUT_NEW(c->idle, n)) &&
+              STRUT_NUMBERS(&c->arena, n, &c->part, &c->x) &&
+              STRUT_NUMBERS(&c->arena, (size_t)c->hessian->start[n], &c->known);
+  if (good && modes) good = (c->spectra = strut_spectrum_create(potential));
+  strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
+  if (good && n > FEW_MODES)
+    status = strut_ldl_create(potential->pattern, &c->arena, &c->ldl, error);
+  if (status == STRUT_OK) return status;
+  strut_curvature_free(c);
+  *curvature = NULL;
+  return status;
 }
 
-/* The modes of what was reduced last, at q; NULL where it is not singular, which refines nothing. */
-static bool find_modes(dense_curvature *curvature, const double *q) {
-  if (curvature->has_modes) return true;
-  curvature->has_modes = strut_spectrum_finish(curvature->spectra, q, false, &curvature->now);
+/* The modes where the Hessian was decomposed; false: there are too many. */
+static bool find_modes(strut_curvature *curvature) {
+  if (curvature->has_modes || !curvature->spectra) return curvature->has_modes;
+  curvature->has_modes =
+      strut_spectrum_compute(curvature->spectra, curvature->q, 0.0, false, &curvature->now);
   if (curvature->has_modes && curvature->now.n)
     curvature->scale =
         fmax(fabs(curvature->now.value[0]), fabs(curvature->now.value[curvature->now.n - 1]));
   return curvature->has_modes;
 }
 
-static bool dense_decompose(void *memory, const double *q) {
-  dense_curvature *curvature = memory;
-  bool singular;
+/* Factorises H + shift, unless that was done last; true where it is positive definite beyond rounding. */
+static bool factorise(strut_curvature *curvature, double shift) {
+  bool good = curvature->shift == shift ||
+              strut_ldl_factorise(curvature->ldl, curvature->hessian, shift, &curvature->inertia) ==
+                  STRUT_OK;
+  curvature->shift = good ? shift : (double)NAN;
+  return good && curvature->inertia.negative == 0 && curvature->inertia.smallest > NOISE;
+}
+
+/* May some eigenvalue be all rounding? Where all pivots are large none is. */
+static bool is_singular(strut_curvature *curvature) {
+  const double large = 1e-5;
+  double noise = strut_spectrum_noise(curvature->spectra, curvature->scale);
+  factorise(curvature, 0.0);
+  if (!isnan(curvature->shift) && curvature->inertia.smallest > large) return false;
+  if (factorise(curvature, -noise)) return false;
+  int32_t above = curvature->inertia.negative;
+  bool known = !isnan(curvature->shift);
+  factorise(curvature, noise);
+  return !known || isnan(curvature->shift) || curvature->inertia.negative != above;
+}
+
+bool strut_curvature_decompose(strut_curvature *curvature, const double *q) {
+  const strut_sparse *matrix = curvature->hessian;
+  size_t bytes = (size_t)matrix->start[matrix->n] * sizeof *matrix->value;
+  double square = 0.0;
+  strut_potential_hessian(curvature->potential, q, curvature->hessian);
+  for (int32_t j = 0; j < matrix->n; j++)
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++) {
+      if (!isfinite(matrix->value[k])) return false;
+      square += (k == matrix->start[j] ? 1.0 : 2.0) * matrix->value[k] * matrix->value[k];
+    }
+  if (curvature->q && memcmp(curvature->known, matrix->value, bytes) == 0) return true;
+  memcpy(curvature->known, matrix->value, bytes);
+  curvature->q = q;
+  curvature->scale = sqrt(square);
+  curvature->shift = (double)NAN;
   curvature->has_modes = false;
-  if (!strut_spectrum_reduce(curvature->spectra, q, &curvature->reduced, &singular)) return false;
-  curvature->scale = curvature->reduced->bound;
-  return (!singular && curvature->reduced->n > FEW_MODES) || find_modes(curvature, q);
+  if (curvature->spectra && (!curvature->ldl || is_singular(curvature)))
+    return find_modes(curvature);
+  return true;
 }
 
-static bool is_definite(dense_curvature *curvature) {
-  return !curvature->has_modes && strut_tridiagonal_factor(curvature->reduced, 0.0) == 0;
-}
-
-/* |x| of x = -(T + mu)^-1 part, and d|x|/dmu; infinite where T + mu is not positive definite. */
-static double reduced_length_at(const void *memory, double mu, double *slope) {
-  const dense_curvature *curvature = memory;
-  int32_t n = curvature->reduced->n;
+/* |x| of x = -(H + mu)^-1 g, and d|x|/dmu; infinite where H + mu is not positive definite. */
+static double factored_length_at(void *memory, double mu, double *slope) {
+  strut_curvature *curvature = memory;
+  int32_t n = curvature->hessian->n;
+  double *x = curvature->x;
   *slope = 0.0;
-  if (strut_tridiagonal_factor(curvature->reduced, mu) > 0) return HUGE_VAL;
-  for (int32_t i = 0; i < n; i++) curvature->x[i] = -curvature->part[i];
-  strut_tridiagonal_solve(curvature->reduced, curvature->x);
-  double length = sqrt(strut_dot(curvature->x, curvature->x, n));
-  if (length > 0) *slope = -strut_tridiagonal_form(curvature->reduced, curvature->x) / length;
+  if (!factorise(curvature, mu)) return HUGE_VAL;
+  for (int32_t i = 0; i < n; i++) x[i] = -curvature->gradient[i];
+  strut_ldl_solve(curvature->ldl, x);
+  memcpy(curvature->part, x, (size_t)n * sizeof *x);
+  strut_ldl_solve(curvature->ldl, curvature->part);
+  double length = sqrt(strut_dot(x, x, n));
+  if (length > 0) *slope = -strut_dot(x, curvature->part, n) / length;
   return length;
 }
 
-static void enter_basis(dense_curvature *curvature, const double *gradient) {
-  memcpy(curvature->part, gradient, (size_t)curvature->reduced->n * sizeof *gradient);
-  strut_tridiagonal_enter(curvature->reduced, curvature->part);
-}
-
-/* False in the hard case, which needs the lowest mode: g has next to no share of it. */
-static bool step_in_basis(dense_curvature *curvature, const double *gradient, double radius,
-                          double *s, strut_model_step *step) {
-  int32_t n = curvature->reduced->n;
-  enter_basis(curvature, gradient);
-  double slope, mu = 0.0, length = reduced_length_at(curvature, mu, &slope);
+/* A step by factors. False in the hard case, which needs the lowest mode: g has next to no share of it. */
+static bool step_by_factor(strut_curvature *curvature, const double *gradient, double radius,
+                           double *s, strut_model_step *step) {
+  int32_t n = curvature->hessian->n;
+  curvature->gradient = gradient;
+  double slope, mu = 0.0, length = factored_length_at(curvature, mu, &slope);
   if (length > radius) {
-    double size = sqrt(strut_dot(curvature->part, curvature->part, n)),
+    double size = sqrt(strut_dot(gradient, gradient, n)),
            lowest = isfinite(length) ? 0.0 : curvature->scale;
-    mu = solve_secular(reduced_length_at, curvature, 0.0, lowest + size / radius, radius);
-    length = reduced_length_at(curvature, mu, &slope);
-    if (!(fabs(length - radius) <= 1e-5 * radius)) return false;
+    mu = solve_secular(factored_length_at, curvature, 0.0, lowest + size / radius, radius, ROUGH);
+    length = factored_length_at(curvature, mu, &slope);
+    if (!isfinite(length)) length = factored_length_at(curvature, mu *= 1.0 + ROUGH, &slope);
+    if (!isfinite(length) || (curvature->spectra && length < (1.0 - ROUGH) * radius)) return false;
   }
   curvature->multiplier = mu;
-  *step = (strut_model_step){
-      length, 0.5 * (mu * length * length - strut_dot(curvature->part, curvature->x, n))};
+  *step = (strut_model_step){length,
+                             0.5 * (mu * length * length - strut_dot(gradient, curvature->x, n))};
   memcpy(s, curvature->x, (size_t)n * sizeof *s);
-  strut_tridiagonal_leave(curvature->reduced, s);
   return true;
 }
 
 /* s from its shares; its length and what the model gains by it. */
-static strut_model_step assemble_step(const dense_curvature *curvature, double *s) {
+static strut_model_step assemble_step(const strut_curvature *curvature, double *s) {
   strut_model_step step = {.length = strut_spectrum_combine(&curvature->now, curvature->x, s)};
   for (int32_t i = 0; i < curvature->now.n; i++)
     if (curvature->x[i] != 0.0)
@@ -187,12 +239,12 @@ static strut_model_step assemble_step(const dense_curvature *curvature, double *
   return step;
 }
 
-static strut_model_step dense_trust_step(void *memory, const double *gradient, double radius,
-                                         double still, double *s) {
-  dense_curvature *curvature = memory;
+strut_model_step strut_curvature_trust_step(strut_curvature *curvature, const double *gradient,
+                                            double radius, double still, double *s) {
   strut_model_step step = {0};
-  if (!curvature->has_modes && step_in_basis(curvature, gradient, radius, s, &step)) return step;
-  if (!find_modes(curvature, NULL)) return step;
+  curvature->border = (double)NAN;
+  if (!curvature->has_modes && step_by_factor(curvature, gradient, radius, s, &step)) return step;
+  if (!find_modes(curvature)) return step;
   strut_spectrum_split(&curvature->now, gradient, still, curvature->part, curvature->idle);
   strut_quadratic model = {curvature->now.n, curvature->now.value, curvature->part,
                            curvature->idle,  curvature->scale,     0.0};
@@ -201,266 +253,76 @@ static strut_model_step dense_trust_step(void *memory, const double *gradient, d
   return assemble_step(curvature, s);
 }
 
+/* Eigenvalues of H below `border`. */
+static int32_t count_below(strut_curvature *curvature, double border) {
+  factorise(curvature, -border);
+  return curvature->inertia.negative;
+}
+
 /* A border in the middle of the gap above `stiff`; 0: no mode is stiffer. */
-static double find_border(dense_curvature *curvature, double stiff) {
-  int32_t soft = strut_tridiagonal_factor(curvature->reduced, -stiff);
+static double find_border(strut_curvature *curvature, double stiff) {
+  int32_t soft = count_below(curvature, stiff);
   double high = stiff;
-  if (soft == curvature->reduced->n) return 0.0;
-  while (strut_tridiagonal_factor(curvature->reduced, -10.0 * high) == soft) high *= 10.0;
+  if (soft == curvature->hessian->n) return 0.0;
+  while (high < curvature->scale && count_below(curvature, 10.0 * high) == soft) high *= 10.0;
   return sqrt(stiff * high);
 }
 
 /*
  * Newton's step weighed mode by mode by 1 - 5 u^4 + 4 u^5, u = c / (value + c): 1 for stiff modes, to
- * (c / value)^4, and 0 for soft ones, to (value / c)^2. A border within a gap is as good as a sharp one.
+ * (c / value)^4, and 0 for soft ones, to (value / c)^2.
  */
-static bool rebalance_in_basis(dense_curvature *curvature, const double *gradient, double stiff,
-                               double *step) {
-  int32_t n = curvature->reduced->n;
-  double c = 2.0 * find_border(curvature, stiff);
-  if (c == 0.0 || strut_tridiagonal_factor(curvature->reduced, c) > 0) return false;
-  enter_basis(curvature, gradient);
-  memset(curvature->x, 0, (size_t)n * sizeof *curvature->x);
+static bool rebalance_by_factor(strut_curvature *curvature, const double *gradient, double c,
+                                double *step) {
+  int32_t n = curvature->hessian->n;
+  if (c == 0.0 || !factorise(curvature, c)) return false;
+  memcpy(curvature->part, gradient, (size_t)n * sizeof *gradient);
   for (int k = 1; k <= 5; k++) {
-    strut_tridiagonal_solve(curvature->reduced, curvature->part);
-    for (int32_t i = 0; i < n; i++) curvature->x[i] += (k < 5 ? 1.0 : -4.0) * curvature->part[i];
+    strut_ldl_solve(curvature->ldl, curvature->part);
+    for (int32_t i = 0; i < n; i++) step[i] -= (k < 5 ? 1.0 : -4.0) * curvature->part[i];
     for (int32_t i = 0; i < n; i++) curvature->part[i] *= c;
   }
-  strut_tridiagonal_leave(curvature->reduced, curvature->x);
-  for (int32_t i = 0; i < n; i++) step[i] -= curvature->x[i];
   return true;
 }
 
-static bool dense_rebalance(void *memory, const double *gradient, double *step) {
-  dense_curvature *curvature = memory;
+bool strut_curvature_rebalance(strut_curvature *curvature, const double *gradient, double *step) {
   double stiff = curvature->multiplier > 0 ? 10.0 * curvature->multiplier : 1e-3 * curvature->scale;
-  if (!curvature->has_modes) return rebalance_in_basis(curvature, gradient, stiff, step);
+  if (!curvature->has_modes) {
+    if (isnan(curvature->border)) curvature->border = find_border(curvature, stiff);
+    return rebalance_by_factor(curvature, gradient, 2.0 * curvature->border, step);
+  }
   return strut_spectrum_rebalance(&curvature->now, curvature->now.value, stiff, gradient, step);
 }
 
-static double dense_newton_step(void *memory, const double *gradient, double *s) {
-  dense_curvature *curvature = memory;
+double strut_curvature_newton_step(strut_curvature *curvature, const double *gradient, double *s) {
   strut_model_step step;
-  if (is_definite(curvature) && step_in_basis(curvature, gradient, HUGE_VAL, s, &step))
-    return step.length;
-  if (!find_modes(curvature, NULL)) return HUGE_VAL;
+  if (!curvature->has_modes && !factorise(curvature, 0.0) && !find_modes(curvature) &&
+      (isnan(curvature->shift) || curvature->inertia.smallest <= NOISE))
+    factorise(curvature, 1e-13 * curvature->scale);
+  if (!curvature->has_modes) {
+    if (isnan(curvature->shift)) return HUGE_VAL;
+    for (int32_t i = 0; i < curvature->hessian->n; i++) s[i] = -gradient[i];
+    strut_ldl_solve(curvature->ldl, s);
+    return sqrt(strut_dot(s, s, curvature->hessian->n));
+  }
   strut_spectrum_split(&curvature->now, gradient, HUGE_VAL, curvature->part, curvature->idle);
   for (int32_t i = 0; i < curvature->now.n; i++)
     curvature->x[i] = curvature->idle[i] ? 0.0 : -curvature->part[i] / curvature->now.value[i];
-  return assemble_step(curvature, s).length;
+  step = assemble_step(curvature, s);
+  return step.length;
 }
 
-static bool dense_unstable_direction(void *memory, double *step) {
-  dense_curvature *curvature = memory;
-  if (is_definite(curvature)) return false;
-  if (!find_modes(curvature, NULL) || curvature->now.n == 0 ||
-      !(curvature->now.value[0] < -4.0 * curvature->now.noise[0]))
-    return false;
-  memcpy(step, curvature->now.vector, (size_t)curvature->now.n * sizeof *step);
-  return true;
-}
-
-const strut_curvature strut_curvature_dense = {
-    dense_create,      dense_decompose,          dense_trust_step, dense_rebalance,
-    dense_newton_step, dense_unstable_direction, dense_free};
-
-/* Steps by a sparse L D L' factor of the Hessian, shifted until it is positive definite. */
-
-typedef struct sparse_curvature {
-  const strut_potential *potential;
-  strut_sparse *hessian;
-  strut_ldl *ldl;
-  strut_inertia inertia;
-  double shift;           /* of the factor at hand; NAN: there is none */
-  double scale;           /* largest diagonal entry */
-  double *work, *scratch; /* (n) */
-  double *factored;       /* (nonzeros) the Hessian that the factor is of */
-  strut_arena arena;
-} sparse_curvature;
-
-static void sparse_free(void *memory) {
-  sparse_curvature *curvature = memory;
-  if (!curvature) return;
-  strut_ldl_free(curvature->ldl);
-  strut_arena_free(&curvature->arena);
-  strut_release(curvature);
-}
-
-static void *sparse_create(const strut_potential *potential) {
-  sparse_curvature *curvature = strut_allocate(1, sizeof *curvature);
-  if (!curvature) return NULL;
-  curvature->potential = potential;
-  curvature->hessian = strut_potential_matrix(potential, &curvature->arena);
+bool strut_curvature_unstable_direction(strut_curvature *curvature, double *step) {
+  int32_t n = curvature->hessian->n;
+  double least = 1e-13 * curvature->scale;
+  if (n == 0 || (!curvature->has_modes && factorise(curvature, 0.0))) return false;
+  if (find_modes(curvature)) {
+    memcpy(step, curvature->now.vector, (size_t)n * sizeof *step);
+    return curvature->now.value[0] < -4.0 * curvature->now.noise[0];
+  }
   curvature->shift = (double)NAN;
-  if (curvature->hessian &&
-      STRUT_NUMBERS(&curvature->arena, potential->n, &curvature->work, &curvature->scratch) &&
-      STRUT_NUMBERS(&curvature->arena, (size_t)curvature->hessian->start[potential->n],
-                    &curvature->factored) &&
-      strut_ldl_create(potential->pattern, &curvature->ldl, NULL) == STRUT_OK)
-    return curvature;
-  sparse_free(curvature);
-  return NULL;
+  return strut_ldl_lowest(curvature->ldl, curvature->hessian, least, step, curvature->x) < -least;
 }
-
-/* Pivots of this share of their diagonal are rounding: neither their size nor their sign counts. */
-static const double NOISE = 32 * DBL_EPSILON;
-
-/* Factorises H + shift, unless that was done last; true where it is positive definite beyond rounding. */
-static bool factorise(sparse_curvature *curvature, double shift) {
-  bool good = curvature->shift == shift ||
-              strut_ldl_factorise(curvature->ldl, curvature->hessian, shift, &curvature->inertia) ==
-                  STRUT_OK;
-  curvature->shift = good ? shift : (double)NAN;
-  return good && curvature->inertia.negative == 0 && curvature->inertia.smallest > NOISE;
-}
-
-static bool sparse_decompose(void *memory, const double *q) {
-  sparse_curvature *curvature = memory;
-  const strut_sparse *matrix = curvature->hessian;
-  size_t bytes = (size_t)matrix->start[matrix->n] * sizeof *matrix->value;
-  strut_potential_hessian(curvature->potential, q, curvature->hessian);
-  bool same = memcmp(curvature->factored, matrix->value, bytes) == 0;
-  curvature->scale = 0.0;
-  for (int32_t k = 0; k < matrix->start[matrix->n]; k++)
-    if (!isfinite(matrix->value[k])) return false;
-  for (int32_t j = 0; j < matrix->n; j++)
-    curvature->scale = fmax(curvature->scale, fabs(matrix->value[matrix->start[j]]));
-  if (same) return true;
-  memcpy(curvature->factored, matrix->value, bytes);
-  curvature->shift = (double)NAN;
-  return true;
-}
-
-/* s = -(H + shift)^-1 g; its length. */
-static double solve_shifted(sparse_curvature *curvature, const double *gradient, double *step) {
-  int32_t n = curvature->hessian->n;
-  for (int32_t i = 0; i < n; i++) step[i] = -gradient[i];
-  strut_ldl_solve(curvature->ldl, step);
-  return sqrt(strut_dot(step, step, n));
-}
-
-static strut_model_step evaluate_step(sparse_curvature *curvature, const double *gradient,
-                                      const double *step) {
-  int32_t n = curvature->hessian->n;
-  strut_sparse_multiply(curvature->hessian, step, curvature->work);
-  return (strut_model_step){
-      sqrt(strut_dot(step, step, n)),
-      -strut_dot(gradient, step, n) - 0.5 * strut_dot(step, curvature->work, n)};
-}
-
-/* The smallest of the shifts tried at which H + shift is positive definite; false: none is. */
-static bool find_shift(sparse_curvature *curvature, double *low, double *shift) {
-  *low = 0.0;
-  if (factorise(curvature, 0.0)) {
-    *shift = 0.0;
-    return true;
-  }
-  double next = 1e-14 * curvature->scale + 1e-300;
-  for (int i = 0; i < 40; i++, next *= 10.0) {
-    if (factorise(curvature, next)) {
-      *shift = next;
-      return true;
-    }
-    if (!isnan(curvature->shift)) *low = next;
-  }
-  return false;
-}
-
-/* Reduces a shift that is larger than necessary towards `low`, which is too small: a longer step. */
-static double lengthen_step(sparse_curvature *curvature, const double *gradient, double radius,
-                            double low, double shift, double length, double *step) {
-  for (int i = 0; i < 3 && low > 0 && length < 0.7 * radius; i++) {
-    double between = sqrt(low * shift);
-    bool good = factorise(curvature, between);
-    double longer = good ? solve_shifted(curvature, gradient, step) : HUGE_VAL;
-    if (longer <= radius) {
-      shift = between, length = longer;
-      continue;
-    }
-    low = between;
-    factorise(curvature, shift);
-    length = solve_shifted(curvature, gradient, step);
-  }
-  return length;
-}
-
-/*
- * From a shift whose step is too long upwards: Newton's method on 1/|s|, each trial a new factor.
- */
-static void shorten_step(sparse_curvature *curvature, const double *gradient, double radius,
-                         double low, double length, double *step) {
-  int32_t n = curvature->hessian->n;
-  double high = HUGE_VAL, shift = low;
-  for (int i = 0; i < 30 && !(length <= radius && length > 0.7 * radius); i++) {
-    memcpy(curvature->scratch, step, (size_t)n * sizeof *step);
-    strut_ldl_solve(curvature->ldl, curvature->scratch);
-    double slope = strut_dot(step, curvature->scratch, n); /* -|s| d|s|/dshift */
-    double next = shift + length * length * (length / (0.85 * radius) - 1.0) / slope;
-    if (!(next > low && next < high))
-      next = high == HUGE_VAL ? fmax(10.0 * low, 1e-14 * curvature->scale) : 0.5 * (low + high);
-    if (high - low <= 1e-3 * high && length <= radius) break;
-    if (!factorise(curvature, next)) break;
-    shift = next;
-    length = solve_shifted(curvature, gradient, step);
-    *(length > radius ? &low : &high) = shift;
-  }
-  if (length <= radius) return;
-  for (int32_t i = 0; i < n; i++) step[i] *= radius / length;
-}
-
-/* A step of 0.7 to 1 radius is good enough, or a shorter one where Newton's is. */
-static strut_model_step sparse_trust_step(void *memory, const double *gradient, double radius,
-                                          double still, double *step) {
-  sparse_curvature *curvature = memory;
-  double low, shift;
-  (void)still;
-  if (!find_shift(curvature, &low, &shift)) return (strut_model_step){0};
-  double length = solve_shifted(curvature, gradient, step);
-  if (length > radius)
-    shorten_step(curvature, gradient, radius, shift, length, step);
-  else if (shift > 0)
-    lengthen_step(curvature, gradient, radius, low, shift, length, step);
-  return evaluate_step(curvature, gradient, step);
-}
-
-/* A factor does not know its stiff modes. */
-static bool sparse_rebalance(void *memory, const double *gradient, double *step) {
-  (void)memory, (void)gradient, (void)step;
-  return false;
-}
-
-static double sparse_newton_step(void *memory, const double *gradient, double *step) {
-  sparse_curvature *curvature = memory;
-  factorise(curvature, 0.0);
-  if (isnan(curvature->shift) || curvature->inertia.smallest <= NOISE)
-    factorise(curvature, 1e-13 * curvature->scale);
-  return isnan(curvature->shift) ? HUGE_VAL : solve_shifted(curvature, gradient, step);
-}
-
-/*
- * Inverse iteration from a start that leans on no motion, shifted to just below the lowest value.
- */
-static bool sparse_unstable_direction(void *memory, double *step) {
-  sparse_curvature *curvature = memory;
-  int32_t n = curvature->hessian->n;
-  double low, shift, quotient = 0.0;
-  if (!find_shift(curvature, &low, &shift)) return false;
-  if (shift <= 1e-13 * curvature->scale) return false;
-  for (int32_t i = 0; i < n; i++) step[i] = sin(1.0 + 12.9898 * i);
-  for (int turn = 0; turn < 20; turn++) {
-    strut_ldl_solve(curvature->ldl, step);
-    double length = sqrt(strut_dot(step, step, n));
-    for (int32_t i = 0; i < n; i++) step[i] /= length;
-    strut_sparse_multiply(curvature->hessian, step, curvature->work);
-    quotient = strut_dot(step, curvature->work, n);
-    if (turn > 3 && quotient < 0) break;
-  }
-  return quotient < -1e-13 * curvature->scale;
-}
-
-const strut_curvature strut_curvature_sparse = {
-    sparse_create,      sparse_decompose,          sparse_trust_step, sparse_rebalance,
-    sparse_newton_step, sparse_unstable_direction, sparse_free};
 
 /* Displacement of coordinate `at` per unit of (along x, along y, rotation about the centre by 1/size). */
 typedef struct frame {

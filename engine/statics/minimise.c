@@ -14,8 +14,7 @@ enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
 
 struct strut_minimiser {
   const strut_potential *potential;
-  const strut_curvature *curvature;
-  void *workspace;
+  strut_curvature *curvature;
   int64_t hessian_count;
   double size;                /* of the structure [m] */
   double longest_step;        /* bound of all steps [m] */
@@ -36,30 +35,23 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   strut_minimiser *m = *minimiser = strut_allocate(1, sizeof *m);
   size_t n = (size_t)potential->n, length = (size_t)potential->model->length;
   if (!m) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  bool dense = potential->n <= STRUT_DENSE_STATICS;
-  strut_status status = dense ? STRUT_OK : strut_linear_solver_load(error);
-  if (status) {
-    strut_release(m);
-    *minimiser = NULL;
-    return status;
-  }
   m->potential = potential;
   m->size = potential->model->size > 0 ? potential->model->size : 1.0;
   m->longest_step = HUGE_VAL;
   m->first_step = 0.1 * m->size;
-  m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
-  m->workspace = m->curvature->create(potential);
-  if (m->workspace && STRUT_NUMBERS(&m->arena, n, &m->g, &m->g_trial, &m->step, &m->unbent) &&
-      STRUT_NUMBERS(&m->arena, length, &m->trial, &m->before))
-    return STRUT_OK;
+  strut_status status = strut_curvature_create(potential, &m->curvature, error);
+  if (!status && (!STRUT_NUMBERS(&m->arena, n, &m->g, &m->g_trial, &m->step, &m->unbent) ||
+                  !STRUT_NUMBERS(&m->arena, length, &m->trial, &m->before)))
+    status = strut_no_memory(error, "");
+  if (status == STRUT_OK) return status;
   strut_minimiser_free(m);
   *minimiser = NULL;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return status;
 }
 
 void strut_minimiser_free(strut_minimiser *minimiser) {
   if (!minimiser) return;
-  if (minimiser->workspace) minimiser->curvature->free(minimiser->workspace);
+  strut_curvature_free(minimiser->curvature);
   strut_arena_free(&minimiser->arena);
   strut_release(minimiser);
 }
@@ -70,7 +62,7 @@ int64_t strut_minimiser_hessian_count(const strut_minimiser *minimiser) {
 
 static bool decompose_hessian(strut_minimiser *minimiser, const double *q) {
   minimiser->hessian_count++;
-  return minimiser->curvature->decompose(minimiser->workspace, q);
+  return strut_curvature_decompose(minimiser->curvature, q);
 }
 
 /* trial = q + factor * step. */
@@ -110,7 +102,7 @@ static void polish_point(strut_minimiser *minimiser, double *q, double reach, st
   for (int i = 0; i < MOST_POLISH; i++) {
     double length =
         decompose_hessian(minimiser, q)
-            ? minimiser->curvature->newton_step(minimiser->workspace, minimiser->g, minimiser->step)
+            ? strut_curvature_newton_step(minimiser->curvature, minimiser->g, minimiser->step)
             : HUGE_VAL;
     if (!(length < 0.9 * earlier) || length > reach) break;
     set_trial(minimiser, q, 1.0);
@@ -129,8 +121,7 @@ static void polish_point(strut_minimiser *minimiser, double *q, double reach, st
 /* Leaves a stationary point that is no minimum along the unstable direction, on its lower side. */
 static bool leave_ridge(strut_minimiser *minimiser, double *q, double radius) {
   double here = strut_potential_value(minimiser->potential, q);
-  if (!minimiser->curvature->unstable_direction(minimiser->workspace, minimiser->step))
-    return false;
+  if (!strut_curvature_unstable_direction(minimiser->curvature, minimiser->step)) return false;
   for (double far = radius; far > 1e-6 * minimiser->size; far *= 0.25) {
     set_trial(minimiser, q, far);
     double up = strut_potential_value_near(minimiser->potential, minimiser->trial, q);
@@ -200,7 +191,7 @@ static double try_step(strut_minimiser *minimiser, const double *q, double here,
   double ratio = energy_lost(minimiser, here, *there, expected) / expected;
   for (int i = 0; i < MOST_BENDS && !(ratio > 0.75); i++) {
     memcpy(minimiser->unbent, minimiser->step, bytes);
-    if (!minimiser->curvature->rebalance(minimiser->workspace, minimiser->g_trial, minimiser->step))
+    if (!strut_curvature_rebalance(minimiser->curvature, minimiser->g_trial, minimiser->step))
       break;
     set_trial(minimiser, q, 1.0);
     double lower = strut_potential_value_near(minimiser->potential, minimiser->trial, q);
@@ -224,8 +215,8 @@ static double radius_growth(const strut_minimiser *minimiser, double ratio) {
 /* One trust-region step; false where the radius has shrunk to nothing. */
 static bool descend_once(strut_minimiser *minimiser, double *q, double still, double *radius,
                          double *energy) {
-  strut_model_step step = minimiser->curvature->trust_step(minimiser->workspace, minimiser->g,
-                                                           *radius, still, minimiser->step);
+  strut_model_step step = strut_curvature_trust_step(minimiser->curvature, minimiser->g, *radius,
+                                                     still, minimiser->step);
   if (!(step.length > 0)) return false;
   for (int tries = 0; tries < 60; tries++) {
     double there, ratio = try_step(minimiser, q, *energy, step.reduction, &there);
@@ -242,8 +233,8 @@ static bool descend_once(strut_minimiser *minimiser, double *q, double still, do
     }
     *radius = (ratio > -1.0 ? 0.25 : 0.1) * step.length;
     if (!(*radius > DBL_EPSILON * minimiser->size)) return false;
-    step = minimiser->curvature->trust_step(minimiser->workspace, minimiser->g, *radius, still,
-                                            minimiser->step);
+    step = strut_curvature_trust_step(minimiser->curvature, minimiser->g, *radius, still,
+                                      minimiser->step);
   }
   return false;
 }
@@ -294,7 +285,7 @@ strut_descent strut_minimise(strut_minimiser *minimiser, double *q) {
       }
       end.end = STRUT_DESCENT_REACHED;
       double left =
-          minimiser->curvature->newton_step(minimiser->workspace, minimiser->g, minimiser->step);
+          strut_curvature_newton_step(minimiser->curvature, minimiser->g, minimiser->step);
       end.step = left;
       if (left <= 1e-3 * minimiser->size || extra++ == MOST_EXTRA) break;
     }

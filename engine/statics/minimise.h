@@ -2,9 +2,9 @@
 /**
  * From a shape downhill to a stationary point of the potential: Newton's method in a trust region.
  *
- * Up to STRUT_DENSE_STATICS free coordinates by exact steps, from the tridiagonal form of the Hessian
- * or its eigenvectors; above by its sparse L D L' factor, shifted until it is positive definite.
- * Directions without stiffness and without force (free bodies, mechanisms) are left alone.
+ * Steps by the Hessian's sparse L D L' factor, shifted until it is positive definite; up to
+ * STRUT_DENSE_STATICS free coordinates by its modes where it is singular: directions without stiffness
+ * and without force (free bodies, mechanisms) are left alone.
  * Deterministic.
  */
 #pragma once
@@ -73,10 +73,7 @@ bool strut_descend_along(strut_minimiser *minimiser, const double *direction, do
  */
 strut_descent_end strut_descend_gently(strut_minimiser *minimiser, double *q);
 
-/*
- * The Hessian as a descent uses it, dense or by a sparse factor; and the step within a
- * trust region (More and Sorensen).
- */
+/* The Hessian as a descent uses it, and the step within a trust region (More and Sorensen). */
 
 /** A step and the energy that the quadratic model says it releases. */
 typedef struct strut_model_step {
@@ -84,28 +81,26 @@ typedef struct strut_model_step {
   double reduction; /* -(g's + s'Hs/2) [J] */
 } strut_model_step;
 
-/** A decomposition of the Hessian: dense or sparse. Rows are those of the potential; all arrays are (n). */
-typedef struct strut_curvature {
-  /** The workspace that the others take; NULL: out of memory. */
-  void *(*create)(const strut_potential *potential);
-  /** Decomposes the Hessian at q; false: not finite, or out of memory. */
-  bool (*decompose)(void *workspace, const double *q);
-  /** The lowest point of the model within |s| <= radius. still [N]: a force within rounding. */
-  strut_model_step (*trust_step)(void *workspace, const double *gradient, double radius,
-                                 double still, double *step);
-  /**
-   * Corrects the step s that trust_step returned last by Newton's method in the stiff modes only,
-   * with the gradient g at its end: turning bars stretch to second order. False: no stiff modes.
-   */
-  bool (*rebalance)(void *workspace, const double *gradient, double *step);
-  /** The Newton step without the directions that have no stiffness; returns its length. */
-  double (*newton_step)(void *workspace, const double *gradient, double *step);
-  /** The unit direction of most negative curvature; false if none is negative beyond rounding. */
-  bool (*unstable_direction)(void *workspace, double *step);
-  void (*free)(void *workspace);
-} strut_curvature;
-
-extern const strut_curvature strut_curvature_dense, strut_curvature_sparse;
+/** A decomposition of the Hessian. Rows are those of the potential; all arrays are (n). */
+typedef struct strut_curvature strut_curvature;
+strut_status strut_curvature_create(const strut_potential *potential, strut_curvature **curvature,
+                                    strut_error *error);
+void strut_curvature_free(strut_curvature *curvature);
+/** Decomposes the Hessian at q, which stays there until the next call; false: not finite, or out of memory. */
+bool strut_curvature_decompose(strut_curvature *curvature, const double *q);
+/** The lowest point of the model within |s| <= radius, or nearly so. still [N]: a force within rounding. */
+strut_model_step strut_curvature_trust_step(strut_curvature *curvature, const double *gradient,
+                                            double radius, double still, double *step);
+/**
+ * Corrects the step that trust_step returned last by Newton's method in the stiff modes only, with the
+ * gradient at its end: turning bars stretch to second order. False: no stiff modes.
+ */
+bool strut_curvature_rebalance(strut_curvature *curvature, const double *gradient, double *step);
+/** The Newton step without the directions that have no stiffness; returns its length. */
+double strut_curvature_newton_step(strut_curvature *curvature, const double *gradient,
+                                   double *step);
+/** The unit direction of most negative curvature; false if none is negative beyond rounding. */
+bool strut_curvature_unstable_direction(strut_curvature *curvature, double *step);
 
 /** q(x) = sum part x + value x^2 / 2, one term for each mode, in any order. */
 typedef struct strut_quadratic {

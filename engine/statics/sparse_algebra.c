@@ -10,6 +10,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 /* ---- one thread for the BLAS, whose sums have other bits with several ---- */
 
 /* Found among the libraries that the others need, if the BLAS is OpenBLAS; else NULL. */
@@ -223,13 +225,6 @@ typedef struct search {
   a_int *select, parameter[11], pointer[14];
 } search;
 
-/* A start that leans on no motion: bits stirred from the index. */
-static double stirred(uint64_t i) {
-  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  return (double)((z ^ (z >> 27)) >> 11) * 0x1p-53 - 0.5;
-}
-
 static bool allocate_search(search *self, strut_arena *arena) {
   size_t n = (size_t)self->n, p = (size_t)self->vectors;
   if (!STRUT_ALLOCATE(arena, STRUT_NEW(self->select, p)) ||
@@ -237,7 +232,7 @@ static bool allocate_search(search *self, strut_arena *arena) {
       !STRUT_NUMBERS(arena, 3 * n, &self->work) ||
       !STRUT_NUMBERS(arena, p * (p + 8), &self->small) || !STRUT_NUMBERS(arena, p, &self->value))
     return false;
-  for (int32_t i = 0; i < self->n; i++) self->residual[i] = stirred((uint64_t)i);
+  for (int32_t i = 0; i < self->n; i++) self->residual[i] = strut_stirred((uint64_t)i);
   self->parameter[0] = 1; /* ARPACK chooses the shifts of its restarts */
   self->parameter[2] = MOST_RESTARTS;
   self->parameter[6] = SHIFT_INVERT;

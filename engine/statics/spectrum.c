@@ -11,13 +11,13 @@ struct strut_spectrum_workspace {
   const strut_potential *potential;
   strut_arena arena;
   strut_sparse *hessian;
-  double least; /* of the spectrum at hand [N] */
-  bool uneven;  /* stiffnesses differ by so much that the dense solver may lose the soft ones */
-  strut_tridiagonal dense;
-  double *soft;                /* (n, n) room for the form on soft modes, then its eigenvectors */
-  double *raw, *value, *noise; /* (n) */
-  double *work;                /* (n) */
-  double *vector, *turned;     /* (n, n) */
+  double least;  /* of the spectrum at hand [N] */
+  bool uneven;   /* stiffnesses differ by so much that the dense solver may lose the soft ones */
+  double *dense; /* (n, n) */
+  double *soft;  /* (n, n) room for the form on soft modes, then its eigenvectors */
+  double *raw, *value, *noise;         /* (n) */
+  double *work;                        /* (n) */
+  double *vector, *turned;             /* (n, n) */
   double *along, *across, *form_noise; /* (n) of one force in each soft mode; noise of the form */
   int32_t *order;                      /* (n) */
 };
@@ -40,10 +40,9 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
   room->order = strut_arena_allocate(&room->arena, n, sizeof *room->order);
   room->hessian = strut_potential_matrix(potential, &room->arena);
   if (room->order && room->hessian &&
-      STRUT_NUMBERS(&room->arena, n * n, &room->soft, &room->vector, &room->turned) &&
+      STRUT_NUMBERS(&room->arena, n * n, &room->dense, &room->soft, &room->vector, &room->turned) &&
       STRUT_NUMBERS(&room->arena, n, &room->raw, &room->value, &room->noise, &room->work,
-                    &room->along, &room->across, &room->form_noise) &&
-      strut_tridiagonal_create(&room->dense, potential->n, &room->arena))
+                    &room->along, &room->across, &room->form_noise))
     return room;
   strut_spectrum_free(room);
   return NULL;
@@ -67,12 +66,12 @@ static void sort_order(const double *value, int32_t n, int32_t *order) {
 static bool fill_dense(strut_spectrum_workspace *room) {
   const strut_sparse *matrix = room->hessian;
   size_t n = (size_t)matrix->n;
-  memset(room->dense.z, 0, n * n * sizeof *room->dense.z);
+  memset(room->dense, 0, n * n * sizeof *room->dense);
   for (size_t j = 0; j < n; j++)
     for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++) {
       size_t i = (size_t)matrix->row[k];
       if (!isfinite(matrix->value[k])) return false;
-      room->dense.z[i * n + j] = room->dense.z[j * n + i] = matrix->value[k];
+      room->dense[i * n + j] = room->dense[j * n + i] = matrix->value[k];
     }
   return true;
 }
@@ -206,28 +205,27 @@ static bool refine(strut_spectrum_workspace *room, const double *q, int32_t coun
   return true;
 }
 
-static bool reduce(strut_spectrum_workspace *room, const double *q, double least) {
-  room->least = least;
-  strut_potential_hessian_above(room->potential, q, least, room->hessian);
-  if (!fill_dense(room)) return false;
-  strut_tridiagonal_reduce(&room->dense);
-  return true;
-}
-
 /* Below this share of the largest, eigenvalues of the dense solver are not worth their digits. */
 static const double LOST = 1e-10;
 
-bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool careful,
-                           strut_spectrum *spectrum) {
+double strut_spectrum_noise(const strut_spectrum_workspace *room, double largest) {
+  return fmax(8.0 * room->potential->n * DBL_EPSILON, room->uneven ? LOST : 0.0) * largest +
+         DBL_MIN;
+}
+
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
+                            bool careful, strut_spectrum *spectrum) {
   int32_t n = room->potential->n, soft = 0, lost = 0;
   *spectrum = (strut_spectrum){n, room->value, room->vector, room->noise};
   if (n == 0) return true;
-  if (!strut_tridiagonal_eigen(&room->dense, room->raw)) return false;
+  room->least = least;
+  strut_potential_hessian_above(room->potential, q, least, room->hessian);
+  if (!fill_dense(room) || !strut_eigen(room->dense, n, room->raw, room->work)) return false;
   sort_order(room->raw, n, room->order);
   size_t rows = (size_t)n;
   for (size_t i = 0; i < rows; i++) {
     room->value[i] = room->raw[room->order[i]];
-    memcpy(room->vector + i * rows, room->dense.z + (size_t)room->order[i] * rows,
+    memcpy(room->vector + i * rows, room->dense + (size_t)room->order[i] * rows,
            rows * sizeof *room->vector);
   }
   double largest = fmax(fabs(room->value[0]), fabs(room->value[n - 1]));
@@ -238,22 +236,6 @@ bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool
   }
   if (soft == 0 || !(careful || (lost > 0 && room->uneven))) return true;
   return refine(room, q, soft);
-}
-
-bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q,
-                           strut_tridiagonal **tridiagonals, bool *singular) {
-  *tridiagonals = &room->dense;
-  if (!reduce(room, q, 0.0)) return false;
-  double noise = fmax(8.0 * room->dense.n * DBL_EPSILON, room->uneven ? LOST : 0.0);
-  double shift = noise * room->dense.bound + DBL_MIN;
-  int32_t above = strut_tridiagonal_factor(&room->dense, -shift);
-  *singular = strut_tridiagonal_factor(&room->dense, shift) != above;
-  return true;
-}
-
-bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
-                            bool careful, strut_spectrum *spectrum) {
-  return reduce(room, q, least) && strut_spectrum_finish(room, q, careful, spectrum);
 }
 
 static const double *mode_of(const strut_spectrum *spectrum, int32_t i) {

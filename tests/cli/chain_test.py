@@ -100,7 +100,7 @@ for columns, rows in ((2, 2), (2, 3)):
 printed = run(*lattice(6, 4)).stdout
 listed = int(re.search(r"equilibria +(\d+)", printed)[1])
 more = int(re.search(r"more stable ones exist, at least \(95 %\) +(\d+)", printed)[1])
-chance = float(re.search(r"next start finds a new stable one +([0-9.]+)", printed)[1])
+chance = float(re.search(r"estimated probability of a new stable one +([0-9.]+)", printed)[1])
 check("cut short" in printed and 1000 < more <= 2 ** 24 - listed and chance > 0.5, f"6 x 4 cells: {printed[:800]}")
 
 finish()

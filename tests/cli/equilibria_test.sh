@@ -7,7 +7,7 @@
 expect 0 equilibria "$crawler"
 err_empty
 for text in "I                 stable  22.7061 J" "equilibrium  " "III" "collapsed" "1 crossing" \
-  "barrier  over" "others, that --all lists                203"; do
+  "barrier  over" "others, that --all lists                   203" "passes between stable ones"; do
   out_has "$text"
 done
 out_has_not "below ground ("
@@ -20,6 +20,11 @@ expect 0 equilibria "$models/basics/von-mises-truss.yaml" --json
 holds '[.equilibria[] | select(.outcome == "stands") | .energy] | . == sort and .[0] < .[1]'
 [ "$(jq -c '[.equilibria[] | select(.outcome == "stands")] | sort_by(.energy) | map(.name)' out)" = \
   '["equilibrium-1","equilibrium-2"]' ] || fail "names are not in the order of the energy"
+
+# Of equal energies the list has the order of the names.
+expect 0 equilibria "$models/parts/bistable-lattice.yaml" --json
+holds '[.equilibria[].name | select(startswith("equilibrium-")) | ltrimstr("equilibrium-") | tonumber] | . == sort'
+holds '.missed.unstable | startswith("passes")'
 
 expect 0 equilibria "$crawler" --json -o results
 cp out all.json

@@ -121,6 +121,10 @@ done
 expect 0 path reel.yaml --over reel --until "-1.5 m" --json
 holds '.end == "invalid" and (.remark | contains("rest length of rope would reach zero"))'
 
+# A force that is rounding beside the others of the path is 0.
+expect 0 path "$models/gallery/bumping-beams.yaml"
+out_has_not "e-2"
+
 # It ends where the scene means nothing any more, and says why.
 expect 0 path over.yaml --set load=0 --over k --until "-10 N/m" --json
 holds '.end == "invalid" and (.points[-1].value | fabs) < 1e-3 and

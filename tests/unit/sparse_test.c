@@ -172,34 +172,3 @@ TEST(parts_are_solved_together) {
   strut_sparse_multiply(m, back, x);
   for (int32_t i = 0; i < ALL; i++) assert_near(x[i], b[i], 1e-14);
 }
-
-/* One pattern, many numbers: solutions against products, and a matrix that is not positive definite. */
-TEST(factorised_again) {
-  uint64_t r = 9;
-  static double dense[N * N];
-  for (int turn = 0; turn < 30; turn++) {
-    OWN(strut_arena) arena = {0};
-    int32_t n = 1 + random_below(&r, N);
-    strut_sparse *m = random_matrix(&r, n, (size_t)random_below(&r, 3 * n), dense, &arena);
-    strut_refactor *f = strut_refactor_create(m, &arena);
-    assert_non_null(f);
-    for (int again = 0; again < 4; again++) {
-      double x[N], b[N], sum = 0.0;
-      for (int32_t k = 0; k < m->start[n]; k++) m->value[k] = random_between(&r, -1, 1);
-      for (int32_t k = 0; k < m->start[n]; k++) sum += fabs(m->value[k]);
-      for (int32_t j = 0; j < n; j++) m->value[m->start[j]] = sum * random_between(&r, 1, 2);
-      for (int32_t i = 0; i < n; i++) x[i] = random_between(&r, -1, 1);
-      strut_sparse_multiply(m, x, b);
-      if (again == 2) { /* in between: refused, and nothing left behind */
-        int32_t at = random_below(&r, n);
-        double kept = m->value[m->start[at]];
-        m->value[m->start[at]] = -1.0;
-        assert_true(strut_refactor_apply(f, m) >= 0);
-        m->value[m->start[at]] = kept;
-      }
-      assert_int_equal(strut_refactor_apply(f, m), -1);
-      strut_refactor_solve(f, b);
-      for (int32_t i = 0; i < n; i++) assert_near(b[i], x[i], 1e-12);
-    }
-  }
-}

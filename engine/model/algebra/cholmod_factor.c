@@ -37,13 +37,9 @@ static cholmod_sparse view(const strut_sparse *matrix) {
   return result;
 }
 
-static void forget_numbers(strut_cholmod_factor *factor) {
-  cholmod_free_factor(&factor->numeric, &factor->common);
-}
-
 static void free_factor(strut_cholmod_factor *factor) {
   if (!factor) return;
-  forget_numbers(factor);
+  cholmod_free_factor(&factor->numeric, &factor->common);
   cholmod_free_factor(&factor->symbolic, &factor->common);
   cholmod_finish(&factor->common);
   strut_release(factor);
@@ -61,13 +57,12 @@ static strut_cholmod_factor *analyse(const strut_sparse *pattern, double *nonzer
   return NULL;
 }
 
-static bool factorise(strut_cholmod_factor *factor, const strut_sparse *matrix, double shift,
+static bool factorise(strut_cholmod_factor *factor, const strut_sparse *matrix,
                       strut_cholmod_columns *columns) {
   cholmod_common *common = &factor->common;
   cholmod_sparse a = view(matrix);
-  double beta[2] = {shift, 0.0};
+  double beta[2] = {0.0, 0.0};
   assert((size_t)matrix->n == factor->symbolic->n);
-  forget_numbers(factor);
   cholmod_factor *self = factor->numeric = cholmod_copy_factor(factor->symbolic, common);
   if (!self || !cholmod_factorize_p(&a, beta, NULL, 0, self, common) ||
       common->status < CHOLMOD_OK || !cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, self, common))
@@ -86,7 +81,6 @@ const strut_cholmod_library strut_cholmod_table = {
     .stamp = STRUT_LIBRARY_STAMP(strut_cholmod_library),
     .analyse = analyse,
     .factorise = factorise,
-    .forget = forget_numbers,
     .free = free_factor,
 };
 

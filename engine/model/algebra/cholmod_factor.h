@@ -12,7 +12,7 @@
 #include "engine/base/library.h"
 #include "engine/model/algebra/linear_solver.h"
 
-/** The order and pattern of a factor, and its numbers from `factorise` to `forget`. */
+/** The order and pattern of a factor, and its numbers from `factorise` on. */
 typedef struct strut_cholmod_factor strut_cholmod_factor;
 
 /** A view of the numbers: columns of L whose first entry is that of D; P A P' = L D L'. */
@@ -28,11 +28,9 @@ typedef struct strut_cholmod_library {
   strut_library_stamp stamp;
   /** Orders and analyses a pattern; *nonzeros of the factor. NULL: out of memory. */
   strut_cholmod_factor *(*analyse)(const strut_sparse *pattern, double *nonzeros);
-  /** Factorises matrix + shift I, a matrix with that pattern. False: out of memory. */
-  bool (*factorise)(strut_cholmod_factor *factor, const strut_sparse *matrix, double shift,
+  /** Factorises the matrix, once. False: out of memory. */
+  bool (*factorise)(strut_cholmod_factor *factor, const strut_sparse *matrix,
                     strut_cholmod_columns *columns);
-  /** Frees the numbers; NULL-safe in all states. */
-  void (*forget)(strut_cholmod_factor *factor);
   /** Frees all; NULL is allowed. */
   void (*free)(strut_cholmod_factor *factor);
 } strut_cholmod_library;

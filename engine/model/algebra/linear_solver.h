@@ -62,36 +62,27 @@ typedef struct strut_inertia {
   double least, largest; /* |D| */
 } strut_inertia;
 
-/** Orders and analyses a pattern; its numbers do not matter. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, strut_error *error);
-void strut_ldl_free(strut_ldl *ldl);
-
+/** Orders and analyses a pattern, in the arena; its numbers do not matter. STRUT_OK or STRUT_NO_MEMORY. */
+strut_status strut_ldl_create(const strut_sparse *pattern, strut_arena *arena, strut_ldl **ldl,
+                              strut_error *error);
 /**
- * Factorises matrix + shift * I. STRUT_SINGULAR where a pivot is zero to the last bit or not finite
- * (then nothing can be solved), STRUT_NO_MEMORY.
+ * Factorises matrix + shift * I, without asking for memory. STRUT_SINGULAR where a pivot is zero to the last bit or
+ * not finite (then nothing can be solved).
  */
 strut_status strut_ldl_factorise(strut_ldl *ldl, const strut_sparse *matrix, double shift,
                                  strut_inertia *inertia);
 /** b (n) becomes (matrix + shift I)^-1 b, in the matrix's own order. */
 void strut_ldl_solve(strut_ldl *ldl, double *b);
 /**
- * Estimate of 1 / (|A| |A^-1|) in the 1-norm of what was factorised last, by a few solves (Hager,
- * Higham); it is seldom off by more than a factor of 3. Solutions lose that many digits.
+ * Estimate of 1 / (|A| |A^-1|) in the 1-norm of the matrix, which was factorised last without a shift, by a few
+ * solves (Hager, Higham); it is seldom off by more than a factor of 3. Solutions lose that many digits.
  */
-double strut_ldl_rcond(strut_ldl *ldl);
-
-/* L D L' of a positive definite matrix whose numbers change and whose pattern stays: ordered and
- * analysed once, then factorised again and again without asking for memory.
+double strut_ldl_rcond(strut_ldl *ldl, const strut_sparse *matrix);
+/**
+ * The lowest eigenvalue where it is below -least, else 0, and its unit vector (n), by inverse iteration; `work` (n).
  */
-
-typedef struct strut_refactor strut_refactor;
-
-/** For matrices with the pattern of this one, whose numbers do not matter. NULL: out of memory. */
-strut_refactor *strut_refactor_create(const strut_sparse *pattern, strut_arena *arena);
-/** -1, or the row at which the matrix shows not to be positive definite: there is no factor then. */
-int32_t strut_refactor_apply(strut_refactor *refactor, const strut_sparse *matrix);
-/** b (n) becomes A^-1 b, in the matrix's own order. */
-void strut_refactor_solve(strut_refactor *refactor, double *b);
+double strut_ldl_lowest(strut_ldl *ldl, const strut_sparse *matrix, double least, double *vector,
+                        double *work);
 
 /* Symmetric sparse matrices put together from contributions that may fall on the same place. */
 

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
@@ -23,6 +22,7 @@ static void count_starts(strut_equilibrium_search *search, const strut_critical_
   search->out->unmet += set->unmet;
   search->out->unseen += set->unseen;
   search->out->cut_short = search->out->cut_short || set->cut_short;
+  search->out->climbs = search->out->climbs || set->climbs;
 }
 
 /* Copies the level scene and places every configuration and the start on the support set. */
@@ -168,17 +168,26 @@ static strut_status add_ground(strut_equilibrium_search *search) {
 }
 
 /* Order within a group: standing ones, other stable ones by energy, saddles, maxima. */
-static int compare_candidates(const void *pa, const void *pb) {
-  const strut_candidate_equilibrium *candidate = pa, *b = pb;
-  int stands_a = candidate->e.outcome == STRUT_OUTCOME_STANDS,
-      stands_b = b->e.outcome == STRUT_OUTCOME_STANDS;
-  if (candidate->group != b->group) return candidate->group < b->group ? -1 : 1;
-  if (stands_a != stands_b) return stands_b - stands_a;
-  if (candidate->e.point.label != b->e.point.label)
-    return (int)candidate->e.point.label - (int)b->e.point.label;
-  if (candidate->e.energy != b->e.energy) return candidate->e.energy < b->e.energy ? -1 : 1;
-  int order = memcmp(&candidate->e.point.found, &b->e.point.found, sizeof candidate->e.point.found);
-  return order ? order : (candidate->number > b->number) - (candidate->number < b->number);
+static bool comes_before(const strut_equilibrium_search *search,
+                         const strut_candidate_equilibrium *a,
+                         const strut_candidate_equilibrium *b) {
+  bool stands_a = a->e.outcome == STRUT_OUTCOME_STANDS,
+       stands_b = b->e.outcome == STRUT_OUTCOME_STANDS;
+  if (a->group != b->group) return a->group < b->group;
+  if (stands_a != stands_b) return stands_a;
+  if (a->e.point.label != b->e.point.label) return a->e.point.label < b->e.point.label;
+  return strut_equilibrium_comes_before(search->model, &a->e, &b->e);
+}
+
+/* Insertion sort: it tolerates a comparison that rounding makes intransitive. */
+static void sort_candidates(strut_equilibrium_search *search) {
+  strut_candidate_equilibrium *list = search->candidates;
+  for (size_t i = 1; i < search->count; i++) {
+    strut_candidate_equilibrium moved = list[i];
+    size_t k = i;
+    for (; k > 0 && comes_before(search, &moved, &list[k - 1]); k--) list[k] = list[k - 1];
+    list[k] = moved;
+  }
 }
 
 static void link_ends(strut_equilibrium_search *search) {
@@ -273,8 +282,7 @@ static void turn_to_original(strut_equilibrium_search *search, strut_equilibrium
 /* Sorts, names, links and describes the candidates, and moves them to the result. */
 static strut_status report_equilibria(strut_equilibrium_search *search) {
   strut_arena *arena = &search->out->arena;
-  if (search->count)
-    qsort(search->candidates, search->count, sizeof *search->candidates, compare_candidates);
+  sort_candidates(search);
   strut_equilibrium **list = strut_arena_allocate(arena, search->count, sizeof *list);
   search->out->list = strut_arena_allocate(arena, search->count, sizeof *search->out->list);
   if (!list || !search->out->list) return strut_no_memory(search->error, "");

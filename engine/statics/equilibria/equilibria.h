@@ -107,6 +107,7 @@ typedef struct strut_equilibria {
   int64_t unmet;               /* stable ones, over all searches, that no random start met */
   int64_t unseen;              /* at least as many more exist in all of them, each at 95 % */
   bool cut_short;              /* some search ended early, for the structure's size */
+  bool climbs;                 /* passes between stable ones were looked for */
   strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
   int32_t start;               /* the equilibrium it settled in, or -1: not in the list */
   char start_trouble[600];     /* why the start did not come to rest; else empty */

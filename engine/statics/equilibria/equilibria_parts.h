@@ -267,6 +267,10 @@ strut_status strut_barriers_find(strut_equilibrium_search *search);
  * shape that has a mirror image is shown.
  */
 
+/** By energy, and for equal energies by shape, so that no start matters. */
+bool strut_equilibrium_comes_before(const strut_model *model, const strut_equilibrium *first,
+                                    const strut_equilibrium *second);
+
 /** Largest distance of a shape from the configuration that names it, in model sizes. */
 #define STRUT_NAMED_WITHIN 0.05
 

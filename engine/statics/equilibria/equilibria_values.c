@@ -159,9 +159,12 @@ static const char *name_via(const strut_result_object *of, size_t k) {
 STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_barrier *b = of->at;
                   const strut_equilibria *all = of->outer->at)
 
+static const char climbs[] = "passes between stable ones; others are met by chance";
+
 #define MISSED(X)                                                                                  \
-  X("probability", "1", NUMBER(all->missed.probability), "that a stable one was not found",        \
-    .label = {"the next start finds a new stable one"})                                            \
+  X("probability", "1", NUMBER(all->missed.probability),                                           \
+    "estimate: that one more start finds a new stable one",                                        \
+    .label = {"estimated probability of a new stable one"})                                        \
   X("probability_bound", "1", NUMBER(all->missed.below), "of it, at 95 %",                         \
     .label = {"at most (95 %)"})                                                                   \
   X("unreached", "", COUNT(all->unmet), "stable ones that no random start met",                    \
@@ -171,6 +174,8 @@ STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_barrier *b = of->at;
   X("at_least", "", COUNT(all->unseen), "stable ones that exist besides, at 95 %")                 \
   X(NULL, "", IF(all->unseen, COUNT(all->unseen)), "",                                             \
     .label = {"more stable ones exist, at least (95 %)"})                                          \
+  X("unstable", "", TEXT(all->climbs ? climbs : "not looked for"),                                 \
+    "which unstable ones were looked for", .label = {"unstable ones"})                             \
   X("cut_short", "", FLAG(all->cut_short), "whether some search ended early")
 STRUT_VALUES_HERE(missed_values, MISSED, const strut_equilibria *all = of->at)
 

@@ -257,9 +257,8 @@ static double shape_invariant(const strut_model *model, const double *positions,
   return (x * dy - y * dx) / (model->size * model->size);
 }
 
-/* Order within one stem: by energy, and for equal energies by shape, so that no start matters. */
-static bool comes_before(const strut_model *model, const strut_equilibrium *first,
-                         const strut_equilibrium *second) {
+bool strut_equilibrium_comes_before(const strut_model *model, const strut_equilibrium *first,
+                                    const strut_equilibrium *second) {
   double scale = fmax(fabs(first->energy), fabs(second->energy));
   if (fabs(first->energy - second->energy) > SAME * scale) return first->energy < second->energy;
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
@@ -277,7 +276,8 @@ static void sort_by_energy(const strut_model *model, size_t count, unnamed *rows
   for (size_t i = 1; i < count; i++) {
     unnamed row = rows[i];
     size_t k = i;
-    for (; k > 0 && comes_before(model, row.e, rows[k - 1].e); k--) rows[k] = rows[k - 1];
+    for (; k > 0 && strut_equilibrium_comes_before(model, row.e, rows[k - 1].e); k--)
+      rows[k] = rows[k - 1];
     rows[k] = row;
   }
 }
@@ -286,7 +286,6 @@ static int by_stem(const void *first, const void *second) {
   const unnamed *self = first, *y = second;
   int order = strcmp(self->stem, y->stem);
   if (order) return order;
-  if (self->e->energy != y->e->energy) return self->e->energy < y->e->energy ? -1 : 1;
   return (self->place > y->place) - (self->place < y->place);
 }
 

@@ -163,9 +163,10 @@ static strut_status solve_axis(density_problem *self, int axis) {
   if (row_of && right && n > 0) matrix = assemble_axis(self, axis, row_of, n, right, &arena);
   strut_status status = !row_of || !right ? STRUT_NO_MEMORY : STRUT_OK;
   if (n > 0 && status == STRUT_OK) {
-    status = matrix ? strut_ldl_create(matrix, &ldl, NULL) : STRUT_NO_MEMORY;
+    status = matrix ? strut_ldl_create(matrix, &arena, &ldl, NULL) : STRUT_NO_MEMORY;
     if (status == STRUT_OK) status = strut_ldl_factorise(ldl, matrix, 0.0, &inertia);
-    if (status == STRUT_OK && (inertia.smallest < SOUND || strut_ldl_rcond(ldl) < DETERMINED))
+    if (status == STRUT_OK &&
+        (inertia.smallest < SOUND || strut_ldl_rcond(ldl, matrix) < DETERMINED))
       status = STRUT_SINGULAR;
     if (status == STRUT_OK) strut_ldl_solve(ldl, right);
     for (size_t i = 0; i < nodes && status == STRUT_OK; i++) {
@@ -177,7 +178,6 @@ static strut_status solve_axis(density_problem *self, int axis) {
     for (size_t i = 0; i < nodes && status == STRUT_OK; i++)
       if (row_of[i] >= 0) self->x[2 * i + (size_t)axis] = right[row_of[i]];
   }
-  strut_ldl_free(ldl);
   strut_arena_free(&arena);
   return status;
 }

@@ -479,7 +479,6 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   if (status == STRUT_OK) status = strut_modes_noise(work, modes->at_rest, error);
   if (status == STRUT_OK) status = find_rigid(work, error);
   if (status == STRUT_OK) status = strut_modes_measure(work, error);
-  if (status == STRUT_OK && work->solver.no_memory) status = strut_no_memory(error, "");
   return status ? status : fill_modes(work, wanted, modes, error);
 }
 

@@ -91,7 +91,6 @@ typedef struct strut_modes_solver {
   strut_ldl *ldl;
   strut_sparse sum; /* K + shift M, in the pattern's places */
   strut_inertia inertia;
-  bool no_memory; /* once */
   strut_arena arena;
   const strut_flag *interrupt; /* once set, nothing more is factorised or solved; or NULL */
 } strut_modes_solver;

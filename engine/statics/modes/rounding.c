@@ -17,14 +17,6 @@ static void move(strut_vibration *vibration, double *positions, const double *st
   strut_vibration_update(vibration);
 }
 
-/* -1 to 1, from an index. */
-static double stirred(uint64_t i) {
-  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
-}
-
 /* Last bits of a strain and of its natural one, and, in a shape that is not at rest, of the positions it is made of. */
 static double bits_of(const strut_vibration *vibration, const strut_force *force, bool at_rest) {
   const strut_element_pose *pose = &force->pose;
@@ -58,9 +50,9 @@ static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, 
     bool acts = strut_vibration_force_at(vibration, i, &force);
     uint64_t own = (uint64_t)force.index, first = sample * members;
     if (force.kind == STRUT_FORCE_ELEMENT) first = SAMPLES * members + sample * elements;
-    noise[i] =
-        acts ? -force.pose.slope * (bits_of(vibration, &force, at_rest) * stirred(first + own))
-             : 0.0;
+    noise[i] = acts ? -force.pose.slope *
+                          (bits_of(vibration, &force, at_rest) * strut_stirred(first + own))
+                    : 0.0;
     for (int32_t k = 0; k < 2 * force.nodes && at_rest && acts; k++) {
       int32_t row = vibration->shape->row_of[strut_force_coordinate(&force, k)];
       if (row >= 0) vector[row] -= noise[i] * force.pose.b[k];
@@ -226,10 +218,6 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
 
 /* How far off the eigenpairs are. */
 
-enum { MOST_ITERATIONS = 4 };
-
-/* Relative error that needs no improvement; of the shift from the eigenvalue, so that it stays invertible. */
-static const double GOOD = 1e-11, OFFSET = 1e-7;
 /* Eigenvalues are one where they differ by less than this, relative, or of the largest. */
 static const double CLUSTER = 1e-6, NOTHING = 1e-15;
 
@@ -290,34 +278,6 @@ static void measure_error(strut_modes_work *work, int32_t i, double *kx, double 
   set->residual[i] = kx2 + mx2 > 0 ? sqrt(r2) / (sqrt(kx2) + sqrt(mx2)) : 0.0;
 }
 
-/* Inverse iteration: takes out what the eigensolver left of stiffer motions, or of lighter nodes. */
-static void improve(strut_modes_work *work, int32_t i, double *kx, double *mx) {
-  const strut_vibration *vibration = work->v;
-  strut_eigen_set *set = &work->set;
-  double *x = set->vector + (size_t)i * (size_t)vibration->n, before = HUGE_VAL;
-  for (int k = 0; k < MOST_ITERATIONS; k++) {
-    double value = set->value[i], size = fabs(value), error = set->error[i];
-    if (size <= 4.0 * set->noise[i]) return; /* a zero */
-    if (error <= GOOD * size || error >= size || error > 0.5 * before) return;
-    before = error;
-    strut_modes_factorise(&work->solver, OFFSET * size - value);
-    strut_vibration_multiply(vibration, vibration->m, x, mx);
-    memcpy(x, mx, (size_t)vibration->n * sizeof *x);
-    strut_modes_solve(&work->solver, x);
-    for (int32_t j = i - 1; j >= 0 && together(work, set->value[j], value); j--) {
-      const double *y = set->vector + (size_t)j * (size_t)vibration->n;
-      strut_vibration_multiply(vibration, vibration->m, y, mx);
-      double share = strut_dot(x, mx, vibration->n);
-      for (int32_t r = 0; r < vibration->n; r++) x[r] -= share * y[r];
-    }
-    strut_vibration_multiply(vibration, vibration->m, x, mx);
-    double length = sqrt(strut_dot(x, mx, vibration->n));
-    for (int32_t r = 0; r < vibration->n; r++) x[r] /= length;
-    measure_value(work, i, mx);
-    measure_error(work, i, kx, mx);
-  }
-}
-
 static void swap(double *first, double *second) {
   double c = *first;
   *first = *second, *second = c;
@@ -340,14 +300,9 @@ strut_status strut_modes_measure(strut_modes_work *work, strut_error *error) {
   strut_arena scratch = {0};
   double *kx, *mx;
   bool good = STRUT_NUMBERS(&scratch, n, &kx, &mx);
-  strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
-  for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) measure_value(work, i, mx);
-  if (status == STRUT_OK) sort(&work->set);
-  for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) {
-    measure_error(work, i, kx, mx);
-    improve(work, i, kx, mx);
-    status = strut_experiment_end(work->experiment, status, error);
-  }
+  for (int32_t i = 0; i < work->set.count && good; i++) measure_value(work, i, mx);
+  if (good) sort(&work->set);
+  for (int32_t i = 0; i < work->set.count && good; i++) measure_error(work, i, kx, mx);
   strut_arena_free(&scratch);
-  return status;
+  return good ? STRUT_OK : strut_no_memory(error, "");
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -6,6 +7,7 @@
 #include "engine/statics/modes/parts.h"
 
 #include "engine/base/vec.h"
+#include "engine/model/mass.h"
 #include "engine/statics/algebra.h"
 
 static const double EDGE = 8.0; /* last bits to which a length and a rest length are known */
@@ -83,44 +85,41 @@ bool strut_vibration_is_borderline(const strut_vibration *vibration, int32_t num
          fabs(beyond) <= EDGE * DBL_EPSILON * (fabs(pose->strain) + fabs(pose->natural));
 }
 
-/* Masses of a member's ends, and what both share, along x and y alike. */
-static void add_ends(strut_vibration *vibration, int32_t member, double first, double second,
-                     double shared) {
-  strut_force force;
-  double mass[16] = {0};
-  strut_force_begin(vibration->model, member, &force);
-  for (int k = 0; k < 2; k++) {
-    mass[5 * k] = first, mass[5 * k + 10] = second;
-    mass[5 * k + 8] = shared;
-  }
-  strut_force_scatter(&force, mass, vibration->shape->place, vibration->m);
-}
-
-static void add_masses(strut_vibration *vibration) {
+/* M in the pattern's places: masses on top of zeros there. */
+static bool add_masses(strut_vibration *vibration) {
   const strut_model *model = vibration->model;
-  const double *mass = model->members.mass;
-  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
-  for (int32_t j = 0; j < model->members.count; j++) {
-    double own = consistent ? mass[j] / 3.0 : mass[j] / 2.0;
-    if (mass[j] > 0) add_ends(vibration, j, own, own, consistent ? mass[j] / 6.0 : 0.0);
-  }
   const strut_sparse *matrix = vibration->shape->pattern;
-  for (int32_t i = 0; i < vibration->n; i++) {
-    vibration->m[matrix->start[i]] += model->point_mass[vibration->shape->coordinate[i] / 2];
-    vibration->own_mass[i] = vibration->m[matrix->start[i]];
+  const int32_t *row_of = vibration->shape->row_of;
+  strut_triplets sum = {0};
+  strut_arena scratch = {0};
+  strut_sparse *mass = NULL;
+  size_t most = strut_tangent_entries(model, true) + strut_mass_entries(model);
+  if (strut_triplets_reserve(&sum, most, &scratch)) {
+    strut_tangent_add_pattern(model, row_of, true, &sum);
+    strut_mass_add(model, row_of, 1.0, true, &sum); /* sliding ones where they are at t = 0 */
+    mass = strut_sparse_build(vibration->n, &sum, &vibration->arena);
   }
-  for (int32_t i = 0; i < model->sliding.count; i++) { /* where they are at t = 0 */
-    const strut_sliding_item *item = &model->sliding.item[i];
-    double far = item->start, near = 1.0 - far;
-    add_ends(vibration, item->member, item->mass * near * near, item->mass * far * far,
-             item->mass * near * far);
-  }
-  for (int32_t j = 0; j < vibration->n; j++)
+  strut_arena_free(&scratch);
+  if (!mass) return false;
+  assert(mass->start[mass->n] == matrix->start[matrix->n]);
+  vibration->m = mass->value;
+  for (int32_t j = 0; j < vibration->n; j++) {
+    vibration->own_mass[j] = vibration->m[matrix->start[j]];
     for (int32_t at = matrix->start[j]; at < matrix->start[j + 1]; at++) {
       vibration->mass[j] += vibration->m[at];
       if (matrix->row[at] != j) vibration->mass[matrix->row[at]] += vibration->m[at];
     }
+  }
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *item = &model->sliding.item[i];
+    for (uint32_t k = 0; k < 4; k++) {
+      int32_t row = row_of[item->at[k / 2] + k % 2];
+      double part = k < 2 ? 1.0 - item->start : item->start;
+      if (row >= 0) vibration->own_mass[row] -= item->mass * part * part;
+    }
+  }
   for (int32_t i = 0; i < vibration->n; i++) vibration->massive += vibration->mass[i] > 0;
+  return true;
 }
 
 /* x'Kx over x'Mx is at most that of the worst member or node: M >= half of its diagonal without sliding
@@ -164,8 +163,9 @@ static bool allocate(strut_vibration *vibration) {
   return STRUT_ALLOCATE(arena, STRUT_NEW(vibration->closed, model->contacts.count),
                         STRUT_NEW(vibration->state, (size_t)strut_force_count(model, false))) &&
          STRUT_NUMBERS(arena, model->length, &vibration->q, &vibration->low) &&
-         STRUT_NUMBERS(arena, entries, &vibration->k, &vibration->m, &vibration->d) &&
-         STRUT_NUMBERS(arena, n, &vibration->mass, &vibration->own_mass, &vibration->work);
+         STRUT_NUMBERS(arena, entries, &vibration->k, &vibration->d) &&
+         STRUT_NUMBERS(arena, n, &vibration->mass, &vibration->own_mass, &vibration->work) &&
+         add_masses(vibration);
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,
@@ -188,7 +188,6 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
     for (int32_t k = 0; k < closed_count; k++)
       if (model->contacts.entry[i].node == closed[k])
         v->closed[i] = !model->contacts.surface || strut_contact_gap(&model->contacts, i, q) < 0.0;
-  add_masses(v);
   strut_vibration_update(v);
   return STRUT_OK;
 }
@@ -326,11 +325,10 @@ strut_status strut_modes_solver_create(const strut_vibration *vibration, strut_m
   *solver = (strut_modes_solver){.v = vibration, .sum = *vibration->shape->pattern};
   solver->sum.value = strut_arena_allocate(&solver->arena, entries, sizeof(double));
   if (!solver->sum.value) return strut_no_memory(error, "");
-  return strut_ldl_create(vibration->shape->pattern, &solver->ldl, error);
+  return strut_ldl_create(vibration->shape->pattern, &solver->arena, &solver->ldl, error);
 }
 
 void strut_modes_solver_free(strut_modes_solver *solver) {
-  strut_ldl_free(solver->ldl);
   strut_arena_free(&solver->arena);
   *solver = (strut_modes_solver){0};
 }
@@ -349,7 +347,6 @@ void strut_modes_factorise(strut_modes_solver *solver, double shift) {
     shift *= 1.0 + 1e-3;
   }
   if (status != STRUT_OK) solver->inertia.smallest = 0.0;
-  if (status == STRUT_NO_MEMORY) solver->no_memory = true;
 }
 
 void strut_modes_solve(strut_modes_solver *solver, double *vector) {

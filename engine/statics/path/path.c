@@ -348,6 +348,32 @@ static bool keep_pieces(const strut_path_system *system, strut_path *path) {
          piece;
 }
 
+/* Forces that are rounding beside the largest of the path become 0. */
+static void drop_rounding(const strut_model *model, strut_path *path) {
+  const double rounding = 1e-12;
+  size_t contacts = (size_t)model->contacts.count;
+  double largest = 0.0;
+  for (size_t k = 0, all = path->point_count + path->event_count; k < 2 * all; k++) {
+    strut_path_state *at = k % all < path->point_count
+                               ? &path->points[k % all].at
+                               : &path->events[k % all - path->point_count].at;
+    const struct {
+      double *force;
+      size_t count;
+    } lists[] = {{at->force, (size_t)model->members.count},
+                 {at->distance, model->scene->distance_count},
+                 {at->reaction, (size_t)model->length},
+                 {at->contact, contacts},
+                 {at->friction, contacts}};
+    for (size_t l = 0; l < sizeof lists / sizeof *lists; l++)
+      for (size_t i = 0; i < lists[l].count; i++)
+        if (k < all)
+          largest = fmax(largest, fabs(lists[l].force[i]));
+        else if (fabs(lists[l].force[i]) <= rounding * largest)
+          lists[l].force[i] = 0.0;
+  }
+}
+
 /* How much of the path, or of its steps, is done. */
 static double part_done(const strut_path *path, double until, int32_t step, int32_t steps) {
   double done = ((double)step + 1.0) / (double)steps;
@@ -373,6 +399,8 @@ static strut_status walk_from(path_start *self, double until, int32_t steps, str
     w.failed = w.failed || !keep_pieces(&w.system, path);
     if (w.forks.fork && path->point_count > 0)
       strut_path_walk_branches(&w, path, &self->setup.experiment);
+    drop_rounding(self->model, path);
+    for (size_t k = 0; k < path->branch_count; k++) drop_rounding(self->model, &path->branches[k]);
     if (w.system.drifts && path->point_count == 0)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "nothing holds the structure against %s: it moves as a whole",

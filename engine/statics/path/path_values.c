@@ -77,19 +77,12 @@ STRUT_VALUES_HERE(branch_values, BRANCH, const strut_path *branch = of->at;
 /* ---- what people read ---- */
 
 enum { MOST_POINTS = 20 };
-static const double ROUNDING = 1e-12; /* of the largest force */
 
-/* The force that goes with the parameter: of a displaced coordinate its reaction, 0 where it is rounding. */
+/* The force that goes with the parameter: of a displaced coordinate its reaction. */
 static double force_of(const strut_result_object *of, const strut_path_state *state) {
   const strut_path *path = of->outer->at;
-  double largest = 0.0;
-  if (path->coordinate < 0)
-    return over_load(path) && path->reference > 0 ? state->factor * path->reference : (double)NAN;
-  for (size_t k = 0; k < path->point_count; k++)
-    for (size_t j = 0; j < of->scene->member_count; j++)
-      largest = fmax(largest, fabs(path->points[k].at.force[j]));
-  double force = state->reaction[path->coordinate];
-  return fabs(force) > ROUNDING * largest ? force : 0.0;
+  if (path->coordinate >= 0) return state->reaction[path->coordinate];
+  return over_load(path) && path->reference > 0 ? state->factor * path->reference : (double)NAN;
 }
 
 /* The node that is farthest from where the path began at some point of it; a free one if there is. */

@@ -195,15 +195,6 @@ struct strut_node_stiffness {
   strut_arena arena;
 };
 
-static void add_sparse(stiff *self, const strut_sparse *matrix) {
-  for (int32_t j = 0; matrix && j < matrix->n; j++)
-    for (int32_t at = matrix->start[j]; at < matrix->start[j + 1]; at++) {
-      size_t r = (size_t)matrix->row[at], c = (size_t)j;
-      self->k[r * self->n + c] += matrix->value[at];
-      if (r != c) self->k[c * self->n + r] += matrix->value[at];
-    }
-}
-
 /* Adds to K a contact stiffness along the ground, equal to that normal to it. */
 static void hold_contacts(stiff *self, const strut_model *model, const double *positions,
                           const int32_t *row_of) {
@@ -274,15 +265,16 @@ double strut_node_stiffness_along(stiff *self, int32_t node, const double direct
 /* K at q, with its rigid motions lifted, factored; or why not. */
 static strut_status fill_stiffness(stiff *self, const strut_model *model, const double *positions,
                                    const char **reason) {
-  strut_linear_matrices matrices;
-  if (!STRUT_NUMBERS(&self->arena, self->n * self->n, &self->k) ||
+  strut_sparse *matrix = strut_potential_matrix(self->potential, &self->arena);
+  if (!matrix || !STRUT_NUMBERS(&self->arena, self->n * self->n, &self->k) ||
       !STRUT_NUMBERS(&self->arena, 3 * self->n, &self->rigid, &self->load))
     return STRUT_NO_MEMORY;
-  strut_status status = strut_linear_matrices_build(model, positions, &self->arena, &matrices);
-  if (status) return status;
-  add_sparse(self, matrices.elastic);
-  add_sparse(self, matrices.geometric);
-  add_sparse(self, matrices.contact);
+  strut_potential_hessian_above(self->potential, positions, -HUGE_VAL, matrix);
+  for (int32_t j = 0; j < matrix->n; j++)
+    for (int32_t at = matrix->start[j]; at < matrix->start[j + 1]; at++) {
+      size_t r = (size_t)matrix->row[at], c = (size_t)j;
+      self->k[r * self->n + c] = self->k[c * self->n + r] = matrix->value[at];
+    }
   hold_contacts(self, model, positions, self->potential->row_of);
   self->rigid_count = strut_rigid_motions(self->potential, positions, NULL, self->rigid);
   lift_rigid(self);

@@ -406,7 +406,8 @@ strut_status strut_critical_search(const strut_potential *potential,
     search_crossed_minima(&s);
     shake_rare_minima(&s);
   }
-  if (dense && effort->saddles) find_saddles(&s);
+  set->climbs = dense && effort->saddles;
+  if (set->climbs) find_saddles(&s);
   if (!s.status) estimate_missed(&s);
   if (!s.status) s.status = sort_into_set(&s);
   strut_search_tasks_free(s.batch);

@@ -26,6 +26,7 @@ typedef struct strut_critical_set {
   int64_t unmet;                /* minima found that no random start met: their basins are small */
   int64_t unseen;               /* at least as many more minima exist, at 95 % */
   bool cut_short; /* the structure is too large for as many starts and climbs as it asks for */
+  bool climbs;    /* saddles were looked for */
   strut_arena arena;
 } strut_critical_set;
 
@@ -159,8 +160,8 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
  */
 
 typedef struct strut_climber strut_climber;
-/** For one thread at a time. NULL: out of memory. */
-strut_climber *strut_climber_create(const strut_potential *potential);
+/** For one thread at a time; the minimiser of the same potential polishes the ends. NULL: out of memory. */
+strut_climber *strut_climber_create(const strut_potential *potential, strut_minimiser *minimiser);
 /** Hessians decomposed so far: a measure of the work done. */
 int64_t strut_climber_hessian_count(const strut_climber *climber);
 void strut_climber_free(strut_climber *climber);

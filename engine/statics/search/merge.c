@@ -104,16 +104,12 @@ static double largest_diagonal(const strut_sparse *matrix) {
 
 enum { WANTED = 6 };
 
-/*
- * Negative eigenvalues of H + shift; -1 without memory. A shift that meets a zero pivot is moved.
- */
+/* Negative eigenvalues of H + shift; -1: it cannot be factorised. A shift that meets a zero pivot is moved. */
 static int32_t count_negative(const judgement *self, strut_ldl *ldl, double shift) {
   strut_inertia inertia;
-  for (int i = 0; i < 8; i++, shift *= 1.125) {
-    strut_status status = strut_ldl_factorise(ldl, self->hessian, shift, &inertia);
-    if (status == STRUT_OK) return inertia.negative;
-    if (status == STRUT_NO_MEMORY) return -1;
-  }
+  for (int i = 0; i < 8; i++, shift *= 1.125)
+    if (strut_ldl_factorise(ldl, self->hessian, shift, &inertia) == STRUT_OK)
+      return inertia.negative;
   return -1;
 }
 
@@ -156,7 +152,8 @@ static strut_status judge_sparse(const judgement *self, strut_arena *arena,
   double noise = 64.0 * DBL_EPSILON * largest_diagonal(self->hessian) + 1e-300;
   double *vector = strut_arena_allocate(&scratch, WANTED * n, sizeof *vector);
   point->eigenvalues = strut_arena_allocate(arena, WANTED, sizeof *point->eigenvalues);
-  bool good = vector && point->eigenvalues && !strut_ldl_create(self->hessian, &ldl, NULL);
+  bool good =
+      vector && point->eigenvalues && !strut_ldl_create(self->hessian, &scratch, &ldl, NULL);
   int32_t above = good ? count_negative(self, ldl, -noise) : -1;
   /* where none is below the upper bound, none is below the lower one */
   int32_t below = above > 0 ? count_negative(self, ldl, noise) : above;
@@ -172,7 +169,6 @@ static strut_status judge_sparse(const judgement *self, strut_arena *arena,
     point->eigenvalue_count = WANTED;
     set_softest(self, vector, WANTED, self->work, point);
   }
-  strut_ldl_free(ldl);
   strut_arena_free(&scratch);
   return status;
 }

@@ -10,10 +10,11 @@
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
 
-enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
+enum { MOST_STEPS = 150, MOST_BENDS = 4 };
 
 struct strut_climber {
   const strut_potential *potential;
+  strut_minimiser *minimiser; /* which polishes what a climb ends on */
   strut_spectrum_workspace *spectra;
   strut_spectrum now;
   double size;
@@ -26,11 +27,12 @@ struct strut_climber {
   strut_arena arena;
 };
 
-strut_climber *strut_climber_create(const strut_potential *potential) {
+strut_climber *strut_climber_create(const strut_potential *potential, strut_minimiser *minimiser) {
   strut_climber *climber = strut_allocate(1, sizeof *climber);
   size_t n = (size_t)potential->n;
   if (!climber) return NULL;
   climber->potential = potential;
+  climber->minimiser = minimiser;
   climber->size = potential->model->size > 0 ? potential->model->size : 1.0;
   climber->spectra = strut_spectrum_create(potential);
   climber->idle = strut_arena_allocate(&climber->arena, n, sizeof *climber->idle);
@@ -181,25 +183,6 @@ static double evaluate_gradient(strut_climber *climber, const double *positions)
   return strut_largest_magnitude(climber->g, climber->potential->n);
 }
 
-/* Newton steps as long as they become shorter. */
-static void polish_saddle(strut_climber *climber, double *positions) {
-  double earlier = HUGE_VAL, length;
-  for (int i = 0; i < MOST_POLISH; i++) {
-    evaluate_gradient(climber, positions);
-    if (!decompose_hessian(climber, positions, false)) return;
-    split_gradient(climber, HUGE_VAL);
-    for (int32_t k = 0; k < climber->now.n; k++)
-      climber->x[k] = climber->idle[k] ? 0.0 : -climber->part[k] / climber->value[k];
-    assemble_step(climber, &length);
-    if (!(length < 0.9 * earlier) || length > 1e-3 * climber->size) return;
-    set_trial(climber, positions);
-    memcpy(positions, climber->trial,
-           (size_t)climber->potential->model->length * sizeof *positions);
-    if (length <= 4.0 * DBL_EPSILON * climber->size) return;
-    earlier = length;
-  }
-}
-
 /* A member with a rest length that has shrunk to a point pushes nowhere: no gradient is defined. */
 static bool has_collapsed(const strut_climber *climber, const double *positions) {
   const strut_model *model = climber->potential->model;
@@ -231,12 +214,9 @@ bool strut_climb(strut_climber *climber, int32_t index, const double *direction,
   for (int i = 0; i < MOST_STEPS; i++) {
     double residual = evaluate_gradient(climber, positions),
            allowed = 8.0 * strut_potential_rounding(potential, positions);
-    if (residual <= allowed) {
-      polish_saddle(climber, positions);
-      return evaluate_gradient(climber, positions) <=
-                 8.0 * strut_potential_rounding(potential, positions) &&
+    if (residual <= allowed)
+      return strut_polish(climber->minimiser, positions).end == STRUT_DESCENT_REACHED &&
              !has_collapsed(climber, positions);
-    }
     if (!decompose_hessian(climber, positions, false)) return false;
     split_gradient(climber, root * allowed);
     if (has_escaped(climber, positions) ||

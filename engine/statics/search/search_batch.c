@@ -9,16 +9,11 @@
 #include <omp.h>
 #endif
 
+#include "engine/base/vec.h"
 #include "engine/model/pose.h"
 
 /* Single nodes are folded across the line of one member of theirs and the next that leads away. */
 enum { WHOLE = 2 };
-
-static uint64_t mix_bits(uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
 
 typedef struct source {
   uint64_t seed, index, counter;
@@ -26,9 +21,9 @@ typedef struct source {
 
 /* Bits of a generator that is a counter: the same for the same (seed, index, counter). */
 static uint64_t next_bits(source *self) {
-  uint64_t key =
-      mix_bits(self->seed + 0x9e3779b97f4a7c15u) ^ mix_bits(self->index * 0xd1342543de82ef95u + 1);
-  return mix_bits(key + (self->counter += 1) * 0x9e3779b97f4a7c15u);
+  uint64_t key = strut_mix_bits(self->seed + 0x9e3779b97f4a7c15u) ^
+                 strut_mix_bits(self->index * 0xd1342543de82ef95u + 1);
+  return strut_mix_bits(key + (self->counter += 1) * 0x9e3779b97f4a7c15u);
 }
 
 /* In [-1, 1). */
@@ -218,7 +213,7 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
     self->direction =
         strut_arena_allocate(&tasks->arena, (size_t)potential->n, sizeof *self->direction);
     good = self->direction && strut_minimiser_create(potential, &self->minimiser, NULL) == STRUT_OK;
-    if (good && climbs) good = (self->climber = strut_climber_create(potential));
+    if (good && climbs) good = (self->climber = strut_climber_create(potential, self->minimiser));
   }
   if (good) return STRUT_OK;
   strut_search_tasks_free(tasks);

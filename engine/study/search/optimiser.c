@@ -5,6 +5,7 @@
 
 #include "engine/study/search/optimisers.h"
 
+#include "engine/base/vec.h"
 #include "engine/study/sweep/sweep.h"
 
 /* Generations are multiples of this, on any machine, so that they fill processors. */
@@ -66,11 +67,8 @@ bool strut_search_optimise(const strut_search_task *task, const strut_search_ask
 }
 
 double strut_search_share(uint64_t *state) {
-  uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  z ^= z >> 31;
-  return ((double)(z >> 11) + 0.5) * 0x1p-53;
+  uint64_t bits = strut_mix_bits(*state += 0x9e3779b97f4a7c15u);
+  return ((double)(bits >> 11) + 0.5) * 0x1p-53;
 }
 
 strut_search_spread strut_search_spread_begin(size_t dimension, uint64_t seed) {
