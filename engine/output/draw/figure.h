@@ -118,8 +118,7 @@ typedef struct strut_trail {
 /* ---- both ---- */
 
 typedef struct strut_panel {
-  const char *title; /* may be NULL; of a view at its upper left corner */
-  const char *note;  /* of a view, in grey below the title; may be NULL */
+  const char *title, *note; /* above it, the note in grey; may be NULL */
   /* A view: structures in a window with one scale for x and y. */
   size_t shape_count, trail_count;
   strut_shape *shapes;
@@ -134,10 +133,9 @@ typedef struct strut_panel {
   strut_series *series;
   strut_band *bands;
   const strut_map *map;
-  const char *lost; /* says what points whose y is not finite are, at the upper edge; or NULL */
-  double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
-  double least;     /* such a range of y is at least so large, */
-  bool zero;        /* and holds zero */
+  double room;  /* of a range that is found, beside the data along x; along y it is 0.06 */
+  double least; /* such a range of y is at least so large, */
+  bool zero;    /* and holds zero */
   /* Both. */
   size_t mark_count;
   strut_label
@@ -148,7 +146,6 @@ typedef struct strut_panel {
   double height; /* [pt]; 0: by the figure's aspect */
   bool whole;    /* takes a row of its own */
   bool beside;   /* stands right of the panel before it, where the page is wide */
-  bool small;    /* a view beside many others */
 } strut_panel;
 
 /** Zero-initialise; strut_figure_draw frees what is in its arena. */

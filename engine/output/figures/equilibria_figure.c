@@ -6,16 +6,11 @@
 #include "engine/output/draw/figure.h"
 #include "engine/output/figures/statics_figures.h"
 
-enum {
-  MOST_CARDS = 12,
-  MOST_SMALL = 6,
-  MOST_PASSES = MOST_CARDS * MOST_CARDS / 2,
-  ARC = 41,
-  FEW = 4
-};
+enum { STANDING, ASIDE, MOST_CARDS = 12, MOST_ASIDE = 6 };
+enum { MOST_PASSES = MOST_CARDS * MOST_CARDS / 2, ARC = 41, FEW = 4 };
 
 static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
-static const double ARROW = 20, MARGIN = 17, LEAST_MARGIN = 6, LADDER = 150; /* [pt] */
+static const double ARROW = 20, MARGIN = 17, LADDER = 150; /* [pt] */
 static const double ROUNDING = 1e-12;     /* of the largest energy: written as zero */
 static const double LEVEL = 0.3;          /* half the width of a level, in places */
 static const double OUTLYING = 1.0 / 3.0; /* so many of the barriers may lie beyond the axis */
@@ -23,17 +18,16 @@ static const double OUTLYING = 1.0 / 3.0; /* so many of the barriers may lie bey
 typedef struct picture {
   const strut_model *model;
   const strut_equilibria *all;
-  size_t *standing, standing_count; /* those that stand, and floppy ones, by energy */
-  size_t floppy_count;              /* of these */
-  size_t *aside, aside_count;       /* further stable ones, by energy */
-  size_t cards, small;              /* drawn of both */
+  /* By energy: those that stand, and floppy ones; further stable ones. */
+  size_t *list[2], count[2], drawn[2];
+  size_t floppy_count; /* of the first */
   double size[2], force_limit, contact_limit, largest_energy;
   strut_beyond beyond; /* force_limit */
   strut_figure figure;
 } picture;
 
 static const strut_equilibrium *card_of(const picture *self, size_t place) {
-  return &self->all->list[self->standing[place]];
+  return &self->all->list[self->list[STANDING][place]];
 }
 
 /* ---- the ladder ---- */
@@ -51,8 +45,8 @@ static double find_height(const picture *self, size_t from, size_t to) {
   for (size_t i = 0; i < self->all->barrier_count; i++) {
     const strut_barrier *b = &self->all->barriers[i];
     double known = isfinite(b->direct) ? b->direct : b->height;
-    if ((size_t)b->from == self->standing[from] && (size_t)b->to == self->standing[to] &&
-        isfinite(known))
+    if (&self->all->list[b->from] == card_of(self, from) &&
+        &self->all->list[b->to] == card_of(self, to) && isfinite(known))
       height = known;
   }
   return height;
@@ -61,11 +55,11 @@ static double find_height(const picture *self, size_t from, size_t to) {
 /* Among many cards only barriers between neighbours remain readable. Returns how many there are. */
 static size_t find_passes(picture *self, const double *level, pass *passes) {
   size_t count = 0;
-  for (size_t left = 0; left < self->cards; left++)
-    for (size_t right = left + 1; right < self->cards; right++) {
+  for (size_t left = 0; left < self->drawn[STANDING]; left++)
+    for (size_t right = left + 1; right < self->drawn[STANDING]; right++) {
       double up = find_height(self, left, right), down = find_height(self, right, left);
       bool one = isfinite(up), two = isfinite(down);
-      if ((!one && !two) || (right > left + 1 && self->cards > FEW)) continue;
+      if ((!one && !two) || (right > left + 1 && self->drawn[STANDING] > FEW)) continue;
       passes[count++] =
           (pass){.place = {left, right},
                  .level = {level[left], level[right]},
@@ -100,7 +94,7 @@ static void add_level(picture *self, strut_series *levels, double x, double ener
 static void add_name(picture *self, strut_panel *panel, double x, double y, const char *text,
                      bool level) {
   strut_label *mark = strut_add_mark(&self->figure, panel, x, y, text);
-  bool large = level && self->cards <= FEW;
+  bool large = level && self->drawn[STANDING] <= FEW;
   mark->font.size = large ? 8 : 7, mark->font.bold = large;
   mark->gap = level ? 3 : 2;
   mark->angle = (level ? -0.5 : 0.5) * STRUT_PI;
@@ -115,7 +109,9 @@ static strut_axis find_axis(const double *level, size_t cards, const pass *passe
   double tops[MOST_PASSES];
   for (size_t k = 0; k < cards; k++) strut_axis_include(&y, level[k]);
   for (size_t i = 0; i < count; i++) tops[i] = passes[i].top;
-  strut_axis_include(&y, strut_limit_without_outliers(tops, count, y.high, OUTLYING, beyond));
+  double range[2] = {y.low, y.high};
+  *beyond = strut_leave_out(tops, count, OUTLYING, range);
+  y.high = range[1];
   strut_axis_settle(&y, 0.2);
   return y;
 }
@@ -127,24 +123,25 @@ static void add_ladder(picture *self) {
       {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
       {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
   static const char *const no_names[] = {NULL};
-  double level[MOST_CARDS], wider = self->cards > FEW ? 0.8 : 0.5; /* names are wider than levels */
+  double level[MOST_CARDS],
+      wider = self->drawn[STANDING] > FEW ? 0.8 : 0.5; /* names are wider than levels */
   pass passes[MOST_PASSES];
   char text[STRUT_BEYOND_TEXT];
   strut_beyond beyond = {0};
-  for (size_t k = 0; k < self->cards; k++)
+  for (size_t k = 0; k < self->drawn[STANDING]; k++)
     level[k] = card_of(self, k)->energy - card_of(self, 0)->energy;
   size_t count = find_passes(self, level, passes);
   if (!count) return;
   strut_panel *panel = strut_add_panel(&self->figure);
   panel->height = LADDER;
   panel->whole = true;
-  panel->x =
-      (strut_axis){.low = -wider, .high = (double)self->cards - 1 + wider, .names = no_names};
-  panel->y = find_axis(level, self->cards, passes, count, &beyond);
+  panel->x = (strut_axis){
+      .low = -wider, .high = (double)self->drawn[STANDING] - 1 + wider, .names = no_names};
+  panel->y = find_axis(level, self->drawn[STANDING], passes, count, &beyond);
   for (int i = 0; i < 3; i++) {
     strut_series *series = strut_add_series(&self->figure, panel, NULL);
     series->pen = pens[i];
-    for (size_t k = 0; k < self->cards && i == 2; k++) {
+    for (size_t k = 0; k < self->drawn[STANDING] && i == 2; k++) {
       add_level(self, series, (double)k, level[k]);
       add_name(self, panel, (double)k, level[k], card_of(self, k)->name, true);
     }
@@ -169,18 +166,20 @@ static const double *drawn_shape(const picture *self, size_t i) {
 }
 
 /* Adds an index to those sorted by energy; equal ones keep the list's order. */
-static void add_by_energy(const strut_equilibria *all, size_t *index, size_t *count, size_t added) {
-  size_t k = (*count)++;
-  for (; k > 0 && all->list[index[k - 1]].energy > all->list[added].energy; k--)
-    index[k] = index[k - 1];
-  index[k] = added;
+static void add_by_energy(picture *self, int kind, size_t added) {
+  const strut_equilibrium *all = self->all->list;
+  size_t *list = self->list[kind], k = self->count[kind]++;
+  for (; k > 0 && all[list[k - 1]].energy > all[added].energy; k--) list[k] = list[k - 1];
+  list[k] = added;
 }
 
 static bool choose_equilibria(picture *self) {
+  static const size_t most[] = {[STANDING] = MOST_CARDS, [ASIDE] = MOST_ASIDE};
   size_t count = self->all->count;
-  self->standing = strut_arena_allocate(&self->figure.arena, count, sizeof *self->standing);
-  self->aside = strut_arena_allocate(&self->figure.arena, count, sizeof *self->aside);
-  if (!self->standing || !self->aside) return false;
+  for (int kind = 0; kind < 2; kind++) {
+    self->list[kind] = strut_arena_allocate(&self->figure.arena, count, sizeof *self->list[kind]);
+    if (!self->list[kind]) return false;
+  }
   for (size_t i = 0; i < count; i++) {
     const strut_equilibrium *equilibrium = &self->all->list[i];
     bool floppy = equilibrium->outcome == STRUT_OUTCOME_FLOPPY;
@@ -188,37 +187,36 @@ static bool choose_equilibria(picture *self) {
     if (equilibrium->point.label != STRUT_STABLE && equilibrium->point.label != STRUT_FLOPPY)
       continue;
     self->floppy_count += floppy;
-    if (equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy)
-      add_by_energy(self->all, self->standing, &self->standing_count, i);
-    else
-      add_by_energy(self->all, self->aside, &self->aside_count, i);
+    add_by_energy(self, equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy ? STANDING : ASIDE,
+                  i);
   }
-  self->cards = self->standing_count < MOST_CARDS ? self->standing_count : MOST_CARDS;
-  self->small = self->aside_count < MOST_SMALL ? self->aside_count : MOST_SMALL;
+  for (int kind = 0; kind < 2; kind++)
+    self->drawn[kind] = self->count[kind] < most[kind] ? self->count[kind] : most[kind];
   return true;
 }
 
 /* The scales that all cards share: of forces but for collapsed states with far larger ones. */
 static void find_scales(picture *self) {
   double most[MOST_CARDS] = {0};
-  const size_t *shown = self->cards ? self->standing : self->aside;
-  for (size_t k = 0; k < (self->cards ? self->cards : self->small); k++) {
-    const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, shown[k]));
+  int kind = self->drawn[STANDING] ? STANDING : ASIDE;
+  for (size_t k = 0; k < self->drawn[kind]; k++) {
+    const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, self->list[kind][k]));
     for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
   }
-  for (size_t k = 0; k < self->cards; k++) {
+  for (size_t k = 0; k < self->drawn[STANDING]; k++) {
     const strut_equilibrium *card = card_of(self, k);
     most[k] = strut_largest(card->member_force, self->model->scene->member_count);
     self->contact_limit =
         fmax(self->contact_limit, strut_largest(card->normal, (size_t)card->contact_count));
   }
-  self->force_limit =
-      strut_limit_without_outliers(most, self->cards, 0.0, COLLAPSED, &self->beyond);
+  double range[2] = {0, 0};
+  self->beyond = strut_leave_out(most, self->drawn[STANDING], COLLAPSED, range);
+  self->force_limit = range[1];
   self->beyond.below = self->beyond.above; /* of either sign */
 }
 
 /* Adds the panel of an equilibrium, without its shape. */
-static strut_panel *add_panel(picture *self, size_t i, double margin) {
+static strut_panel *add_panel(picture *self, size_t i) {
   const strut_equilibrium *equilibrium = &self->all->list[i];
   const strut_ground *ground = &self->model->scene->ground;
   bool zero = !(fabs(equilibrium->energy) > ROUNDING * self->largest_energy);
@@ -227,7 +225,7 @@ static strut_panel *add_panel(picture *self, size_t i, double margin) {
   if (ground->present && ground->slope == 0)
     panel->bounds.low[1] = fmin(panel->bounds.low[1], ground->height);
   strut_bounds_share(&panel->bounds, self->size);
-  panel->margin = margin;
+  panel->margin = MARGIN;
   panel->note = strut_figure_text(&self->figure, "%s, %s",
                                   strut_quantity_of(zero ? 0 : equilibrium->energy, 6, "J").text,
                                   equilibrium->verdict);
@@ -242,7 +240,7 @@ static void add_card(picture *self, size_t i) {
   for (int32_t k = 0; force && k < card->contact_count && card->normal; k++)
     for (int32_t c = 0; c < contacts->count; c++)
       if (contacts->entry[c].node == card->contacts[k]) force[2 * c] = card->normal[k];
-  strut_panel *panel = add_panel(self, i, MARGIN);
+  strut_panel *panel = add_panel(self, i);
   panel->title = card->name;
   strut_shape *shape = strut_add_forces(&self->figure, panel, self->model, drawn_shape(self, i),
                                         card->member_force, self->force_limit);
@@ -252,30 +250,31 @@ static void add_card(picture *self, size_t i) {
   shape->arrow = ARROW;
 }
 
-/* One that is stable but does not stand, small and grey. */
-static void add_small(picture *self, size_t i) {
-  strut_panel *panel = add_panel(self, i, LEAST_MARGIN);
+/* One that is stable but does not stand, in grey. */
+static void add_aside(picture *self, size_t i) {
+  strut_panel *panel = add_panel(self, i);
   strut_shape *shape =
       strut_add_ghost(&self->figure, panel, self->model, drawn_shape(self, i), 0.45);
   shape->style.thinness = 0.4;
   shape->style.no_supports = false;
-  shape->ground = panel->small = true;
+  shape->ground = true;
 }
 
 static const char *describe_all(picture *self) {
-  size_t stable = self->standing_count - self->floppy_count, floppy = self->floppy_count;
-  bool few = self->small < self->aside_count;
-  const char *aside = "";
-  if (self->small)
-    aside = strut_figure_text(
-        &self->figure,
-        "; small and grey: stable on static supports, but not at rest on the ground%s%.0zu%s",
-        few ? " (the lowest of " : "", few ? self->aside_count : 0, few ? ")" : "");
-  return strut_figure_text(
-      &self->figure, "%zu stable equilibri%s%s%s%.0zu%s%s%s", stable, stable == 1 ? "um" : "a",
-      self->model->scene->ground.present ? " on the ground" : "", floppy ? ", " : "", floppy,
-      floppy ? " floppy" : "", self->cards < self->standing_count ? ", the lowest are drawn" : "",
-      aside);
+  strut_figure *figure = &self->figure;
+  size_t floppy = self->floppy_count, stable = self->count[STANDING] - floppy;
+  const char *text =
+      strut_figure_text(figure, "%zu stable equilibri%s%s", stable, stable == 1 ? "um" : "a",
+                        self->model->scene->ground.present ? " on the ground" : "");
+  if (floppy) text = strut_figure_text(figure, "%s, %zu floppy", text, floppy);
+  if (self->drawn[STANDING] < self->count[STANDING])
+    text = strut_figure_text(figure, "%s, the lowest are drawn", text);
+  if (!self->drawn[ASIDE]) return text;
+  text = strut_figure_text(
+      figure, "%s; grey: stable on static supports, but not at rest on the ground", text);
+  return self->drawn[ASIDE] == self->count[ASIDE]
+             ? text
+             : strut_figure_text(figure, "%s (the lowest of %zu)", text, self->count[ASIDE]);
 }
 
 strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
@@ -283,11 +282,11 @@ strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *
   picture p = {.model = model, .all = equilibria, .figure.title = model->scene->name};
   p.figure.failed = !choose_equilibria(&p);
   find_scales(&p);
-  for (size_t k = 0; k < p.cards; k++) add_card(&p, p.standing[k]);
+  for (size_t k = 0; k < p.drawn[STANDING]; k++) add_card(&p, p.list[STANDING][k]);
+  for (size_t k = 0; k < p.drawn[ASIDE]; k++) add_aside(&p, p.list[ASIDE][k]);
   add_ladder(&p);
-  for (size_t k = 0; k < p.small; k++) add_small(&p, p.aside[k]);
   p.figure.note = describe_all(&p);
-  p.figure.yardstick = p.cards > 0;
+  p.figure.yardstick = p.drawn[STANDING] > 0;
   p.figure.scale = strut_force_scale(p.force_limit, &p.beyond);
   return strut_figure_draw(plot, &p.figure, error);
 }

@@ -73,7 +73,9 @@ void strut_run_find_limits(strut_run_scene *run) {
   for (size_t f = 0; f < run->frames && trajectory->force; f++)
     most[f] =
         strut_largest(trajectory->force + f * trajectory->member_count, trajectory->member_count);
-  run->force_limit = strut_limit_without_outliers(most, run->frames, 0.0, FEW_FRAMES, &run->beyond);
+  double range[2] = {0, 0};
+  run->beyond = strut_leave_out(most, run->frames, FEW_FRAMES, range);
+  run->force_limit = range[1];
   run->beyond.below = run->beyond.above; /* of either sign */
 }
 

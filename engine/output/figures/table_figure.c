@@ -207,7 +207,6 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
     size_t curve = n / (size_t)self->y_count, k = n % (size_t)self->y_count;
     if (k == 0) count = rows_of(self, number, curve, row);
     if (k == 0 && !places) add_bands(self, row, count, panel);
-    if (!count && self->wanted->apart) continue;
     strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
     if (places) add_bars(self, panel, series, n, row, count);
     if (self->stable != STRUT_NO_COLUMN)
@@ -470,8 +469,6 @@ static void add_panel(maker *self, size_t i) {
   strut_panel *panel = strut_add_panel(&self->page);
   panel->x = strut_axis_in(x->name, x->unit, x->shown);
   panel->y = strut_axis_in(name_y_axis(self), y->unit, y->shown);
-  panel->lost = self->wanted->lost;
-  panel->room = panel->lost ? 0.06 : 0;
   if (value && value->value)
     panel->scale = (strut_colour_scale){.name = name_of(self, self->value),
                                         .unit = value->unit,
@@ -521,12 +518,10 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
                               strut_error *error) {
   const char *text = NULL;
   maker m = {.plot = plot, .wanted = figure, .marks = marks, .error = error};
-  m.page = (strut_figure){.least_width = figure->apart ? 0
-                                         : is_map(&m)  ? MAP_WIDTH
-                                                       : CURVES_WIDTH,
+  m.page = (strut_figure){.least_width = is_map(&m) ? MAP_WIDTH : CURVES_WIDTH,
                           .aspect = is_map(&m) ? 0.8 : 0.62,
-                          .shared_axes = !figure->apart,
-                          .one_legend = !figure->apart};
+                          .shared_axes = true,
+                          .one_legend = true};
   find_columns(&m, table);
   assert(m.y_count > 0);
   int only = find_column(table, figure->only, &text);
