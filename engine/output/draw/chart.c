@@ -53,13 +53,11 @@ static bool has_markers(const strut_panel *panel, const strut_series *series) {
 static strut_fill category_fill(size_t i) {
   /* Distinguishable in grey: light and dark alternate, and repeated colours are hatched. */
   static const unsigned order[] = {0xF2C14E, 0x2F6DB5, 0x8C2D62, 0xBFD8EA, 0x4C9F70, 0xE7E7E7};
-  static const strut_hatch hatches[] = {STRUT_HATCH_NONE, STRUT_HATCH_RISING, STRUT_HATCH_FALLING,
-                                        STRUT_HATCH_LEVEL};
   size_t count = sizeof order / sizeof *order;
   unsigned rgb = order[i % count];
   return (strut_fill){
       .colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, 1},
-      .hatch = hatches[i / count % 4],
+      .hatch = (strut_hatch)(i / count % (STRUT_HATCH_LEVEL + 1)),
       .hatch_colour = strut_grey(0.3)};
 }
 
@@ -410,8 +408,7 @@ static void draw_mark(const chart *self, const strut_label *mark) {
     label.dot = label.ring = false;
     label.angle = (above ? -0.5 : 0.5) * STRUT_PI;
     label.gap = STRUT_BEYOND_SIZE + 1;
-    strut_draw_beyond(self->canvas, label.at[0], label.at[1], (const double[2]){0, above ? -1 : 1},
-                      0);
+    strut_draw_beyond(self->canvas, label.at[0], label.at[1], (const double[2]){0, above ? -1 : 1});
   }
   strut_draw_label(self->canvas, &label);
 }
@@ -423,19 +420,14 @@ static void mark_beyond(const chart *self) {
   char text[STRUT_BEYOND_TEXT];
   for (size_t i = 0; i < self->panel->series_count; i++) {
     const strut_series *series = &self->panel->series[i];
-    const strut_point *farthest = NULL; /* of the excursion that k is in */
-    for (size_t k = 0; k <= series->count; k++) {
-      const strut_point *p = k < series->count ? &series->points[k] : NULL;
-      bool out = p && (p->y > axis->high || p->y < axis->low);
-      if (out && (!farthest || fabs(p->y) > fabs(farthest->y))) farthest = p;
-      if (out) {
-        beyond.above++;
-        if (fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
-      } else if (farthest) {
-        strut_label mark = strut_mark_of(farthest->x, farthest->y, NULL);
-        draw_mark(self, &mark);
-        farthest = NULL;
-      }
+    bool before = false;
+    for (const strut_point *p = series->points; p < series->points + series->count; p++) {
+      bool out = p->y > axis->high || p->y < axis->low;
+      const strut_label mark = {.at = {p->x, p->y}};
+      beyond.above += out;
+      if (out && fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
+      if (out && !before) draw_mark(self, &mark);
+      before = out;
     }
   }
   draw_note(self, strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text));

@@ -93,7 +93,7 @@ typedef struct strut_shape {
   bool moving;
   bool names;                /* beside its nodes, where they cover little */
   const double (*forces)[2]; /* (contacts) of the ground [N]; or NULL */
-  double force_limit, arrow; /* their scale [N], [pt] */
+  double force_limit;        /* their scale [N] */
 } strut_shape;
 
 /** The pen of arrows of displacement, for keys. */
@@ -111,7 +111,6 @@ typedef struct strut_trail {
   size_t count;
   double (*at)[2]; /* (count) [m] */
   strut_pen pen;
-  double gap; /* left free at both ends of two points, of an arrow at its tip [pt] */
   bool below; /* below the shapes */
 } strut_trail;
 
@@ -174,16 +173,14 @@ typedef struct strut_figure {
 STRUT_API strut_panel *strut_add_panel(strut_figure *figure);
 STRUT_API strut_series *strut_add_series(strut_figure *figure, strut_panel *panel,
                                          const char *label);
+/** One at NAN ends the line, and the next point begins another. */
 STRUT_API strut_point *strut_add_point(strut_figure *figure, strut_series *series, double x,
                                        double y);
-/** The line ends, and the next point begins another. */
-STRUT_API void strut_add_gap(strut_figure *figure, strut_series *series);
 STRUT_API strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,
                                      double high, const char *label);
 /** A text of 7 pt beside a place, as far away as a dot needs; or no text, for a dot or a ring alone. */
 STRUT_API strut_label *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
                                       const char *text);
-STRUT_API strut_label strut_mark_of(double x, double y, const char *text);
 STRUT_API strut_shape *strut_add_shape(strut_figure *figure, strut_panel *panel,
                                        const strut_model *model, const double *positions);
 /** One of a single colour, without nodes and supports, below others. */

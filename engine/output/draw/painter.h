@@ -76,12 +76,8 @@ strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_it
 /** Draws a scale of colours with its ticks below and its name above. */
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale);
 #define STRUT_SCALE_HEIGHT 34.0
-/**
- * A mark at a frame's edge for what lies beyond the side towards `out`: a triangle STRUT_BEYOND_SIZE high, its tip so
- * far outside.
- */
-void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2],
-                       double outside);
+/** A mark for what lies beyond a frame's edge: a triangle STRUT_BEYOND_SIZE high, its tip at x, y, towards `out`. */
+void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2]);
 #define STRUT_BEYOND_SIZE 5.0
 
 /* ---- charts (axes.c, chart.c) ---- */
@@ -130,6 +126,7 @@ void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const s
 strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view);
 /** More than its margin takes below a view, for the forces of the ground [pt]. */
 double strut_view_arrows(const strut_panel *view);
+#define STRUT_ARROW 20.0 /* the largest of them [pt] */
 /** A scale bar with its length, such as "20 mm", at the lower left corner of a view so wide [pt], at its scale [pt/m]. */
 void strut_draw_yardstick(strut_canvas *canvas, double left, double bottom, double width,
                           double scale);

@@ -44,14 +44,6 @@ strut_colour strut_palette_at(strut_colours colours, double value, double low, d
                  colours == STRUT_COLOURS_SEQUENTIAL ? part : 0.5 + 0.5 * value / limit);
 }
 
-strut_colour strut_palette_signed(double value) {
-  return strut_palette_at(STRUT_COLOURS_SIGNED, value, -1, 1);
-}
-
-strut_colour strut_palette_sequence(double value) {
-  return strut_palette_at(STRUT_COLOURS_SEQUENTIAL, value, 0, 1);
-}
-
 strut_colour strut_palette_thing(size_t i) { return from(THINGS[i % STRUT_PALETTE_THINGS]); }
 
 strut_colour strut_grey(double brightness) {

@@ -154,7 +154,8 @@ static strut_colour colour_of(const drawing *d, size_t j, bool slack) {
   if (slack) return strut_grey(0.55);
   if (is_shaded(style)) {
     double part = style->limit > 0 ? style->values[j] / style->limit : 0;
-    return strut_palette_signed(isfinite(part) ? round(SHADES * part) / SHADES : 0);
+    return strut_palette_at(STRUT_COLOURS_SIGNED,
+                            isfinite(part) ? round(SHADES * part) / SHADES : 0, -1, 1);
   }
   return strut_kind_pen(kind, strut_member_is_driven(d->model->scene, j)).colour;
 }
@@ -440,8 +441,8 @@ static void draw_forces(strut_canvas *canvas, const strut_window *window,
   const strut_contact_table *contacts = &shape->model->contacts;
   const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
   for (int32_t i = 0; shape->forces && i < contacts->count && shape->force_limit > 0; i++) {
-    double at[2], normal = shape->forces[i][0] / shape->force_limit * shape->arrow;
-    double along = shape->forces[i][1] / shape->force_limit * shape->arrow;
+    double at[2], normal = shape->forces[i][0] / shape->force_limit * STRUT_ARROW;
+    double along = shape->forces[i][1] / shape->force_limit * STRUT_ARROW;
     const strut_contact_pose pose = strut_contact_pose_at(contacts, i, shape->q, NULL, -1);
     const double *n = pose.axes.normal, *t = pose.axes.tangent;
     strut_window_point(window, shape->q + contacts->at[i], at);

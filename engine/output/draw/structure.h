@@ -25,7 +25,7 @@ STRUT_API double strut_bounds_extent(const strut_bounds *bounds);
 
 typedef enum strut_colouring {
   STRUT_COLOUR_KIND,  /* as strut_kind_pen */
-  STRUT_COLOUR_FORCE, /* strut_palette_signed(value / limit) */
+  STRUT_COLOUR_FORCE, /* by the scale of signed values up to `limit` */
   STRUT_COLOUR_ONE    /* all in `colour` */
 } strut_colouring;
 

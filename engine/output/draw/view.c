@@ -6,6 +6,7 @@
 
 static const double COVERED = 0.22; /* of a view, by names */
 static const double DOT = 0.3;      /* a path seen as a dot [pt] */
+static const double NODE = 2.5;     /* of a node as drawn [pt] */
 enum { TRAIL_SHADES = 64 };
 
 /* True if names cover little of what is seen. */
@@ -22,18 +23,13 @@ static bool names_fit(strut_canvas *canvas, const strut_window *window, const st
   return covered <= seen;
 }
 
-/* From a trail's first point to its last, shortened by its gap where there is room: at the tip of an arrow, else at both ends. */
-static void draw_straight(strut_canvas *canvas, const strut_trail *trail) {
-  bool arrow = trail->kind == STRUT_TRAIL_ARROW;
+/* An arrow ends before the node at its tip; one that is no longer than that is not drawn. */
+static void draw_arrow(strut_canvas *canvas, const strut_trail *trail) {
   const double *from = trail->at[0], *to = trail->at[trail->count - 1];
   double x = to[0] - from[0], y = to[1] - from[1], length = hypot(x, y);
-  double end = trail->gap > 0.0 && length > 3.0 * trail->gap ? trail->gap / length : 0.0;
-  double start = arrow ? 0.0 : end;
-  if (arrow && length >= fmax(2 * trail->gap, 2))
+  double end = length > 3 * NODE ? NODE / length : 0;
+  if (length >= 2 * NODE)
     strut_draw_arrow(canvas, from[0], from[1], to[0] - end * x, to[1] - end * y, 5, trail->pen);
-  else if (!arrow)
-    strut_draw_segment(canvas, from[0] + start * x, from[1] + start * y, to[0] - end * x,
-                       to[1] - end * y, trail->pen);
 }
 
 /* A path that is no longer than a dot is not drawn. */
@@ -45,16 +41,13 @@ static bool is_visible(const strut_trail *trail) {
 }
 
 /* Its points are on the page. */
-static void draw_trail(strut_canvas *canvas, const strut_trail *trail) {
+static void draw_line(strut_canvas *canvas, const strut_trail *trail) {
   size_t shades = trail->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1, all = trail->count - 1;
-  if (trail->kind == STRUT_TRAIL_ARROW || trail->count == 2) {
-    draw_straight(canvas, trail);
-    return;
-  }
   for (size_t shade = 0; trail->count && is_visible(trail) && shade < shades; shade++) {
     size_t first = shade * all / shades, last = (shade + 1) * all / shades;
     strut_pen pen = trail->pen;
-    if (shades > 1) pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
+    if (shades > 1)
+      pen.colour = strut_palette_at(STRUT_COLOURS_SEQUENTIAL, (double)shade, 0, TRAIL_SHADES - 1);
     if (last > first)
       strut_draw_line(canvas, (const double(*)[2])trail->at + first, last - first + 1, pen);
   }
@@ -67,14 +60,14 @@ static void draw_trails(strut_canvas *canvas, const strut_window *window, const 
     if (trail->below != below) continue;
     for (size_t k = 0; k < trail->count; k++)
       strut_window_point(window, trail->at[k], trail->at[k]);
-    draw_trail(canvas, trail);
+    (trail->kind == STRUT_TRAIL_ARROW ? draw_arrow : draw_line)(canvas, trail);
   }
 }
 
 double strut_view_arrows(const strut_panel *view) {
   double room = 0.0;
   for (size_t i = 0; i < view->shape_count; i++)
-    if (view->shapes[i].forces) room = fmax(room, view->shapes[i].arrow - view->margin);
+    if (view->shapes[i].forces) room = fmax(room, STRUT_ARROW - view->margin);
   return room;
 }
 

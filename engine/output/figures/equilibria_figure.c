@@ -7,13 +7,13 @@
 #include "engine/output/figures/statics_figures.h"
 
 enum { STANDING, ASIDE, MOST_CARDS = 12, MOST_ASIDE = 6 };
-enum { MOST_PASSES = MOST_CARDS * MOST_CARDS / 2, ARC = 41, FEW = 4 };
+enum { ARC = 41, FEW = 4 };
 
-static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
-static const double ARROW = 20, MARGIN = 17, LADDER = 150; /* [pt] */
-static const double ROUNDING = 1e-12;     /* of the largest energy: written as zero */
-static const double LEVEL = 0.3;          /* half the width of a level, in places */
-static const double OUTLYING = 1.0 / 3.0; /* so many of the barriers may lie beyond the axis */
+static const double COLLAPSED = 1.0 / 3.0;     /* most of the cards with forces beyond the scale */
+static const double MARGIN = 17, LADDER = 150; /* [pt] */
+static const double ROUNDING = 1e-12;          /* of the largest energy: written as zero */
+static const double LEVEL = 0.3;               /* half the width of a level, in places */
+static const double OUTLYING = 1.0 / 3.0;      /* so many of the barriers may lie beyond the axis */
 
 typedef struct picture {
   const strut_model *model;
@@ -32,13 +32,6 @@ static const strut_equilibrium *card_of(const picture *self, size_t place) {
 
 /* ---- the ladder ---- */
 
-/* A barrier that is drawn between the cards at two places. */
-typedef struct pass {
-  size_t place[2];
-  double level[2], top; /* above the lowest card [J] */
-  const char *text;     /* its heights from either side */
-} pass;
-
 /* From card to card [J]: the direct pass where it is known, else the lowest path; NAN: not known. */
 static double find_height(const picture *self, size_t from, size_t to) {
   double height = (double)NAN;
@@ -52,43 +45,26 @@ static double find_height(const picture *self, size_t from, size_t to) {
   return height;
 }
 
-/* Among many cards only barriers between neighbours remain readable. Returns how many there are. */
-static size_t find_passes(picture *self, const double *level, pass *passes) {
-  size_t count = 0;
-  for (size_t left = 0; left < self->drawn[STANDING]; left++)
-    for (size_t right = left + 1; right < self->drawn[STANDING]; right++) {
-      double up = find_height(self, left, right), down = find_height(self, right, left);
-      bool one = isfinite(up), two = isfinite(down);
-      if ((!one && !two) || (right > left + 1 && self->drawn[STANDING] > FEW)) continue;
-      passes[count++] =
-          (pass){.place = {left, right},
-                 .level = {level[left], level[right]},
-                 .top = one ? level[left] + up : level[right] + down,
-                 .text = strut_figure_text(
-                     &self->figure, "%s%s%s%s", one ? strut_quantity_of(up, 3, "J").text : "",
-                     one ? two ? " \xe2\x86\x92\n" : " \xe2\x86\x92" : "",
-                     two ? "\xe2\x86\x90 " : "", two ? strut_quantity_of(down, 3, "J").text : "")};
-    }
-  return count;
+/* The top of the barrier between a card and the next [J], NAN: none; and its heights from either side. */
+static double find_pass(picture *self, size_t k, const double *level, const char **text) {
+  double up = find_height(self, k, k + 1), down = find_height(self, k + 1, k);
+  bool one = isfinite(up), two = isfinite(down);
+  *text = strut_figure_text(
+      &self->figure, "%s%s%s%s%s", one ? strut_quantity_of(up, 3, "J").text : "",
+      one ? " \xe2\x86\x92" : "", one && two ? "\n" : "", two ? "\xe2\x86\x90 " : "",
+      two ? strut_quantity_of(down, 3, "J").text : "");
+  return one ? level[k] + up : level[k + 1] + down;
 }
 
-/* A smooth curve from one level over the barrier to the other, which leaves the frame where it is higher. */
-static void add_arc(picture *self, strut_series *arcs, const pass *p, double most) {
-  double width = (double)(p->place[1] - p->place[0]) - 2 * LEVEL;
-  double top = p->top <= most ? p->top : 1.3 * most;
+/* Its curve from level to level, smooth, which leaves the frame where it is higher than that. */
+static void add_arc(picture *self, strut_series *arcs, size_t k, const double *level, double top) {
   for (int i = 0; i < ARC; i++) {
-    double t = (double)i / (ARC - 1), low = p->level[t >= 0.5];
+    double t = (double)i / (ARC - 1), low = level[k + (t >= 0.5)];
     double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
-    strut_add_point(&self->figure, arcs, (double)p->place[0] + LEVEL + t * width,
+    strut_add_point(&self->figure, arcs, (double)k + LEVEL + t * (1 - 2 * LEVEL),
                     low + rise * (top - low));
   }
-  strut_add_gap(&self->figure, arcs);
-}
-
-static void add_level(picture *self, strut_series *levels, double x, double energy) {
-  strut_add_point(&self->figure, levels, x - LEVEL, energy);
-  strut_add_point(&self->figure, levels, x + LEVEL, energy);
-  strut_add_gap(&self->figure, levels);
+  strut_add_point(&self->figure, arcs, (double)NAN, (double)NAN);
 }
 
 static void add_name(picture *self, strut_panel *panel, double x, double y, const char *text,
@@ -102,55 +78,43 @@ static void add_name(picture *self, strut_panel *panel, double x, double y, cons
   mark->priority = level ? 2 : 1;
 }
 
-/* The energy axis, which leaves out single barriers far above all else. */
-static strut_axis find_axis(const double *level, size_t cards, const pass *passes, size_t count,
-                            strut_beyond *beyond) {
-  strut_axis y = {.name = "energy above the lowest", .unit = "J"};
-  double tops[MOST_PASSES];
-  for (size_t k = 0; k < cards; k++) strut_axis_include(&y, level[k]);
-  for (size_t i = 0; i < count; i++) tops[i] = passes[i].top;
-  double range[2] = {y.low, y.high};
-  *beyond = strut_leave_out(tops, count, OUTLYING, range);
-  y.high = range[1];
-  strut_axis_settle(&y, 0.2);
-  return y;
-}
-
-/* Adds a panel with the cards as levels and the barriers between them, if there are any. */
+/* Adds a panel with the cards as levels and barriers between neighbours, of which few far above all leave the axis. */
 static void add_ladder(picture *self) {
-  static const strut_pen pens[] = {
-      {.colour = {0.35, 0.35, 0.35, 1}, .width = 0.9}, /* of neighbours, of others, of levels */
-      {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
-      {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
   static const char *const no_names[] = {NULL};
-  double level[MOST_CARDS],
-      wider = self->drawn[STANDING] > FEW ? 0.8 : 0.5; /* names are wider than levels */
-  pass passes[MOST_PASSES];
+  const size_t cards = self->drawn[STANDING];
+  const double wider = cards > FEW ? 0.8 : 0.5; /* names are wider than levels */
+  double level[MOST_CARDS], top[MOST_CARDS] = {0}, sorted[MOST_CARDS], range[2] = {0, 0};
+  const char *heights[MOST_CARDS];
   char text[STRUT_BEYOND_TEXT];
-  strut_beyond beyond = {0};
-  for (size_t k = 0; k < self->drawn[STANDING]; k++)
-    level[k] = card_of(self, k)->energy - card_of(self, 0)->energy;
-  size_t count = find_passes(self, level, passes);
-  if (!count) return;
+  size_t known = 0;
+  for (size_t k = 0; k < cards; k++) level[k] = card_of(self, k)->energy - card_of(self, 0)->energy;
+  for (size_t k = 0; k + 1 < cards; k++)
+    if (isfinite(top[k] = find_pass(self, k, level, &heights[k]))) sorted[known++] = top[k];
+  if (!known) return;
+  range[1] = level[cards - 1];
+  const strut_beyond beyond = strut_leave_out(sorted, known, OUTLYING, range);
   strut_panel *panel = strut_add_panel(&self->figure);
   panel->height = LADDER;
   panel->whole = true;
-  panel->x = (strut_axis){
-      .low = -wider, .high = (double)self->drawn[STANDING] - 1 + wider, .names = no_names};
-  panel->y = find_axis(level, self->drawn[STANDING], passes, count, &beyond);
-  for (int i = 0; i < 3; i++) {
-    strut_series *series = strut_add_series(&self->figure, panel, NULL);
-    series->pen = pens[i];
-    for (size_t k = 0; k < self->drawn[STANDING] && i == 2; k++) {
-      add_level(self, series, (double)k, level[k]);
-      add_name(self, panel, (double)k, level[k], card_of(self, k)->name, true);
-    }
-    for (size_t k = 0; k < count && i < 2; k++) {
-      const pass *p = &passes[k];
-      if ((p->place[1] > p->place[0] + 1) != (i == 1)) continue;
-      add_arc(self, series, p, panel->y.high);
-      if (i == 0) add_name(self, panel, (double)p->place[0] + 0.5, p->top, p->text, false);
-    }
+  panel->x = (strut_axis){.low = -wider, .high = (double)cards - 1 + wider, .names = no_names};
+  panel->y = (strut_axis){"energy above the lowest", "J", .low = range[0], .high = range[1]};
+  strut_axis_settle(&panel->y, 0.2);
+  strut_series *series = strut_add_series(&self->figure, panel, NULL);
+  series->pen = (strut_pen){.colour = strut_grey(0.35), .width = 0.9};
+  for (size_t k = 0; k + 1 < cards; k++) {
+    if (!isfinite(top[k])) continue;
+    double most = panel->y.high;
+    add_arc(self, series, k, level, top[k] <= most ? top[k] : 1.3 * most);
+    add_name(self, panel, (double)k + 0.5, top[k], heights[k], false);
+  }
+  series = strut_add_series(&self->figure, panel, NULL);
+  series->pen = (strut_pen){.colour = strut_palette_thing(0), .width = 2, .butt = true};
+  for (size_t k = 0; k < cards; k++) {
+    double x = (double)k;
+    strut_add_point(&self->figure, series, x - LEVEL, level[k]);
+    strut_add_point(&self->figure, series, x + LEVEL, level[k]);
+    strut_add_point(&self->figure, series, (double)NAN, (double)NAN);
+    add_name(self, panel, x, level[k], card_of(self, k)->name, true);
   }
   panel->remark = strut_figure_text(
       &self->figure, "%s", strut_beyond_text(&beyond, "barrier", "J", (strut_file_unit){0}, text));
@@ -247,7 +211,6 @@ static void add_card(picture *self, size_t i) {
   shape->names = true;
   shape->forces = (const double(*)[2])force;
   shape->force_limit = self->contact_limit;
-  shape->arrow = ARROW;
 }
 
 /* One that is stable but does not stand, in grey. */

@@ -16,21 +16,26 @@ static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displa
 typedef struct picture {
   const strut_model *model;
   const strut_modes *modes;
-  size_t count;
+  size_t count, rigid, higher; /* shown, and not */
   const strut_mode *shown[MOST];
   double *taut; /* (members) 0 where a cable is slack at rest */
   double size;  /* larger extent of the shape at rest [m] */
   strut_figure figure;
 } picture;
 
-/* Chooses the modes with panels: rigid-body motions only if there are no others. */
+/* Chooses the modes with panels: rigid-body motions only if there are no others. Counts the rest. */
 static void choose_modes(picture *self, size_t panels) {
   size_t others = 0, most = panels ? panels : STRUT_MODES_FIGURE_PANELS;
+  if (most > MOST) most = MOST;
   for (size_t i = 0; i < self->modes->count; i++)
     others += self->modes->list[i].kind != STRUT_MODE_RIGID;
-  for (size_t i = 0; i < self->modes->count && self->count < most && self->count < MOST; i++)
-    if (!others || self->modes->list[i].kind != STRUT_MODE_RIGID)
+  for (size_t i = 0; i < self->modes->count; i++) {
+    bool rigid = self->modes->list[i].kind == STRUT_MODE_RIGID;
+    if (self->count < most && !(others && rigid))
       self->shown[self->count++] = &self->modes->list[i];
+    else
+      ++*(rigid ? &self->rigid : &self->higher);
+  }
 }
 
 /* Strains of all members by the displacement drawn, to first order: from that against it to that along it. */
@@ -119,24 +124,6 @@ static void add_modes(picture *self) {
   for (size_t k = 0; k < self->count; k++) add_mode(self, self->shown[k]);
 }
 
-/* Names the modes that have no panel; empty where all have one. */
-static const char *describe_omitted(picture *self) {
-  size_t rigid = 0, left = self->modes->count - self->count;
-  for (size_t i = 0; i < self->modes->count; i++)
-    rigid += self->modes->list[i].kind == STRUT_MODE_RIGID;
-  if (self->shown[0]->kind == STRUT_MODE_RIGID) rigid -= self->count;
-  left -= rigid;
-  const char *text = "";
-  if (rigid)
-    text = strut_figure_text(&self->figure, "not drawn: %zu rigid-body motion%s", rigid,
-                             rigid > 1 ? "s" : "");
-  if (left)
-    text = strut_figure_text(&self->figure, "%s%zu higher mode%s",
-                             *text ? strut_figure_text(&self->figure, "%s, ", text) : "not drawn: ",
-                             left, left > 1 ? "s" : "");
-  return text;
-}
-
 static void add_keys(picture *self) {
   const strut_modes *modes = self->modes;
   const strut_pen grey = {.colour = strut_grey(0.8), .width = 1.8};
@@ -148,8 +135,16 @@ static void add_keys(picture *self) {
                         modes->at_rest ? "" : " (no equilibrium)"));
   strut_add_key(&self->figure, STRUT_KEY_ARROW, strut_displacement_pen(), "displacement");
   if (modes->closed_count) strut_add_key(&self->figure, STRUT_KEY_DOT, ring, "closed contact");
-  const char *rest = describe_omitted(self);
-  if (*rest) strut_add_key(&self->figure, STRUT_KEY_WORDS, grey, rest);
+  const char *rest = "";
+  if (self->rigid)
+    rest = strut_figure_text(&self->figure, ": %zu rigid-body motion%s", self->rigid,
+                             self->rigid > 1 ? "s" : "");
+  if (self->higher)
+    rest = strut_figure_text(&self->figure, "%s%s%zu higher mode%s", rest, *rest ? ", " : ": ",
+                             self->higher, self->higher > 1 ? "s" : "");
+  if (*rest)
+    strut_add_key(&self->figure, STRUT_KEY_WORDS, grey,
+                  strut_figure_text(&self->figure, "not drawn%s", rest));
 }
 
 strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,

@@ -180,7 +180,6 @@ strut_shape *strut_run_add_shape(const strut_run_scene *run, strut_panel *panel,
   shape->ground = true;
   shape->moving = trajectory->time != NULL;
   shape->force_limit = run->contact_limit;
-  shape->arrow = STRUT_RUN_ARROW;
   if (trajectory->force) {
     shape->style.colouring = STRUT_COLOUR_FORCE;
     shape->style.values = shape->style.slack_forces =

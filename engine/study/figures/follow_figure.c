@@ -34,12 +34,9 @@ strut_status strut_follow_figure(const strut_plot *plot, const char *title, size
   table->columns[point].text = mark;
   const char *groups[] = {curves ? "kind" : columns[axes ? axes - 1 : 0].name,
                           axes > 1 ? columns[axes - 2].name : NULL};
-  strut_table_rows rows = {.table = table};
   strut_table_groups found;
-  strut_status status =
-      strut_table_rows_choose(&rows, STRUT_NO_COLUMN, NULL, STRUT_NO_COLUMN, &table->arena, error);
-  for (int k = 0; k < 2 && !status; k++) /* too many have neither colours nor panels */
-    if (groups[k] && strut_table_groups_find(&rows, column_of(table, groups[k]),
+  for (int k = 0; k < 2; k++) /* too many have neither colours nor panels */
+    if (groups[k] && strut_table_groups_find(table, column_of(table, groups[k]),
                                              STRUT_MOST_TABLE_GROUPS, "", &found, NULL))
       groups[k] = NULL;
   strut_plot titled = *plot;
@@ -56,5 +53,5 @@ strut_status strut_follow_figure(const strut_plot *plot, const char *title, size
       .stable = "stable",
       .mark = "point",
       .thing = curves ? NULL : "node"};
-  return status ? status : strut_table_draw(&titled, &figure, table, (strut_table_marks){0}, error);
+  return strut_table_draw(&titled, &figure, table, false, error);
 }

@@ -36,20 +36,21 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
   strut_status status = strut_study_motion(plan, directory, figure, &motion, error);
   strut_sweep_show_units(plan, &motion);
   const strut_plot plot = plot_of(figure, path);
-  if (!status) status = strut_table_draw(&plot, figure, &motion, (strut_table_marks){0}, error);
+  if (!status) status = strut_table_draw(&plot, figure, &motion, false, error);
   strut_arena_free(&motion.arena);
   return status;
 }
 
 /* ---- a search: its best objective over evaluations, its points over two variables ---- */
 
-static const char BEST[] = "best so far"; /* a column */
+static const char BEST[] = "best so far", RINGED[] = "ringed"; /* columns */
 
 /* Rows of a search's table, by number of the point. */
 typedef struct searched_rows {
   const strut_table *table;
   double *best; /* (rows) the best objective so far */
-  bool *shown, *marked;
+  bool *shown;
+  const char **ringed; /* "" but of marked ones */
 } searched_rows;
 
 static size_t row_of(const searched_rows *rows, int64_t point) {
@@ -59,7 +60,8 @@ static size_t row_of(const searched_rows *rows, int64_t point) {
 
 /* Shows the worst scenario of each evaluation; marks the best of each search, or the front of two goals. */
 static void find_rows(searched_rows *rows, const strut_search_result *result) {
-  for (size_t i = 0; i < rows->table->row_count; i++) rows->best[i] = (double)NAN;
+  for (size_t i = 0; i < rows->table->row_count; i++)
+    rows->best[i] = (double)NAN, rows->ringed[i] = "";
   for (size_t i = 0; i < result->outcome_count; i++) {
     const strut_search_outcome *outcome = &result->outcomes[i];
     for (int64_t k = 0; k < outcome->evaluations; k++) {
@@ -68,23 +70,22 @@ static void find_rows(searched_rows *rows, const strut_search_result *result) {
       rows->shown[row] = true;
     }
     if (outcome->best.evaluation >= 0 && outcome->best.violation <= 0.0 && !result->front_count)
-      rows->marked[row_of(rows, outcome->best.worst)] = true;
+      rows->ringed[row_of(rows, outcome->best.worst)] = "yes";
   }
   for (size_t i = 0; i < result->front_count; i++)
     for (size_t k = 0; k < result->fronts[i].count; k++)
-      rows->marked[row_of(rows, result->fronts[i].points[k].worst)] = true;
+      rows->ringed[row_of(rows, result->fronts[i].points[k].worst)] = "yes";
 }
 
-/* The table with a further column. */
-static strut_status extend(const strut_table *from, strut_table_column column, strut_table *to,
-                           strut_error *error) {
-  to->row_count = from->row_count;
-  to->column_count = from->column_count + 1;
-  to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
-  if (!to->columns) return strut_no_memory(error, "while drawing");
-  memcpy(to->columns, from->columns, from->column_count * sizeof *to->columns);
-  to->columns[from->column_count] = column;
-  return STRUT_OK;
+/* Draws those rows of a table, which is freed. */
+static strut_status draw_shown(const strut_plot *plot, const strut_study_figure *figure,
+                               strut_table *table, const bool *shown, strut_error *error) {
+  strut_table chosen = {0};
+  strut_status status = strut_table_choose(table, STRUT_NO_COLUMN, NULL, shown, &chosen, error);
+  if (!status) status = strut_table_draw(plot, figure, &chosen, false, error);
+  strut_arena_free(&chosen.arena);
+  strut_arena_free(&table->arena);
+  return status;
 }
 
 static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_figure *f,
@@ -98,26 +99,25 @@ static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_
   searched_rows rows = {.table = table,
                         .best = strut_arena_allocate(&own.arena, count, sizeof *rows.best),
                         .shown = strut_arena_allocate(&own.arena, count, sizeof *rows.shown),
-                        .marked = strut_arena_allocate(&own.arena, count, sizeof *rows.marked)};
+                        .ringed = strut_arena_allocate(&own.arena, count, sizeof *rows.ringed)};
   const char *unit = search->goal.program.unit;
-  const strut_table_column best = {
-      .name = BEST, .unit = strcmp(unit, "1") == 0 ? "" : unit, .value = rows.best};
-  strut_status status = rows.best && rows.shown && rows.marked
-                            ? extend(table, best, &own, error)
+  strut_status status = rows.best && rows.shown && rows.ringed
+                            ? strut_table_choose(table, STRUT_NO_COLUMN, NULL, NULL, &own, error)
                             : strut_no_memory(error, "while drawing");
+  if (status) return strut_arena_free(&own.arena), status;
+  own.columns[own.column_count++] = (strut_table_column){
+      .name = BEST, .unit = strcmp(unit, "1") == 0 ? "" : unit, .value = rows.best};
+  own.columns[own.column_count++] =
+      (strut_table_column){.name = RINGED, .unit = "", .text = rows.ringed};
+  find_rows(&rows, result);
   if (!figure.color) figure.color = "objective";
+  if (f->kind == STRUT_FIGURE_POINTS) figure.mark = RINGED;
   if (f->kind == STRUT_FIGURE_BEST) {
     figure.x = "evaluation", figure.y = BEST;
     if (!figure.series && search->starts > 1) figure.series = "search";
     if (!plot.y.label) plot.y.label = search->goal.text;
   }
-  if (!status) find_rows(&rows, result);
-  if (!status)
-    status =
-        strut_table_draw(&plot, &figure, &own,
-                         (strut_table_marks){.shown = rows.shown, .marked = rows.marked}, error);
-  strut_arena_free(&own.arena);
-  return status;
+  return draw_shown(&plot, &figure, &own, rows.shown, error);
 }
 
 strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *directory,
@@ -136,8 +136,7 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
   else if (strut_figure_of_runs(figure))
     status = strut_study_pictures(plan, directory, figure, error);
   else
-    status = strut_table_draw(&plot, figure, table,
-                              (strut_table_marks){.spread = plan->study->refine.depth > 0}, error);
+    status = strut_table_draw(&plot, figure, table, plan->study->refine.depth > 0, error);
   strut_arena_free(&arena);
   return status;
 }
@@ -174,12 +173,13 @@ strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study 
   bool one = points == 1, numbers = one || !axes[last - 1].columns[0].word;
   bool *shown = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *shown);
   const char **who = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *who);
-  const strut_table_column column = {.name = "", .unit = "", .text = who};
-  strut_status status =
-      shown && who ? extend(table, column, &own, error) : strut_no_memory(error, "while drawing");
+  strut_status status = shown && who
+                            ? strut_table_choose(table, STRUT_NO_COLUMN, NULL, NULL, &own, error)
+                            : strut_no_memory(error, "while drawing");
   *drawn = !status && numbers && choose_indices(table, of, one, shown, who);
   if (*drawn) {
     strut_plot limited = *plot;
+    own.columns[own.column_count++] = (strut_table_column){.name = "", .unit = "", .text = who};
     const strut_study_figure figure = {.x = one ? "parameter" : own.columns[over].name,
                                        .y = "value",
                                        .series = one ? "measure" : "",
@@ -190,7 +190,7 @@ strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study 
                                        .labels = labels};
     own.columns[of].name = figure.panels;
     limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2, false};
-    status = strut_table_draw(&limited, &figure, &own, (strut_table_marks){.shown = shown}, error);
+    return draw_shown(&limited, &figure, &own, shown, error);
   }
   strut_arena_free(&own.arena);
   return status;
