@@ -114,6 +114,7 @@ STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const c
 /** A text's width and height [pt], unrotated; zero without one. */
 STRUT_API strut_box strut_text_box(strut_canvas *canvas, const char *text, strut_font font);
 
+enum { STRUT_HIGHEST_PRIORITY = 3 };
 /** A text beside what it names. */
 typedef struct strut_label {
   const char *text;
@@ -123,7 +124,7 @@ typedef struct strut_label {
   double angle;        /* preferred direction, counterclockwise from the right */
   double steady;       /* how much that matters: 0 not at all, 1 usually */
   strut_box inside;    /* the text stays in here; zero: the page */
-  int priority;        /* higher ones are placed first */
+  int priority;        /* 0 to STRUT_HIGHEST_PRIORITY; higher ones are placed first */
   bool loose;          /* names nothing at its place: no line leads there */
   bool dot, ring;      /* a filled circle there; an empty one around what is there */
   strut_colour colour; /* of the dot */

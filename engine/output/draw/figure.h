@@ -96,9 +96,6 @@ typedef struct strut_shape {
   double force_limit;        /* their scale [N] */
 } strut_shape;
 
-/** The pen of arrows of displacement, for keys. */
-STRUT_API strut_pen strut_displacement_pen(void);
-
 typedef enum strut_trail_kind {
   STRUT_TRAIL_LINE,     /* by its pen */
   STRUT_TRAIL_SEQUENCE, /* dark to bright, as wide as its pen */
@@ -198,19 +195,18 @@ STRUT_API void strut_add_place(strut_figure *figure, strut_trail *trail, const d
 STRUT_API strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel,
                                          strut_trail_kind kind, strut_pen pen, const double from[2],
                                          const double to[2]);
-/** Arrows from where a shape was to its nodes, unless there are many. */
+/** Arrows from where a shape was to its nodes, unless there are many, and their key. */
 STRUT_API void strut_add_displacements(strut_figure *figure, strut_panel *panel,
                                        const strut_model *model, const double *from,
                                        const double *to);
-/** An item of the key below the figure; without a text none. */
+/** An item of the key below the figure; without a text none, of equal ones the first. */
 STRUT_API strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                                         const char *text);
 /** A text in the arena, whatever the locale; "" where memory is out. */
 STRUT_API const char *strut_figure_text(strut_figure *figure, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/** (count) zeroed numbers in the arena, or a copy; NULL: memory is out. */
-STRUT_API double *strut_figure_numbers(strut_figure *figure, size_t count);
-STRUT_API double *strut_figure_copy(strut_figure *figure, const double *from, size_t count);
+/** (count) numbers in the arena, those of `from` or 0 where that is NULL; NULL: memory is out. */
+STRUT_API double *strut_figure_numbers(strut_figure *figure, const double *from, size_t count);
 /** The scale of signed forces; without a name where the limit is 0. */
 STRUT_API strut_colour_scale strut_force_scale(double limit, const strut_beyond *beyond);
 /**

@@ -117,13 +117,16 @@ strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel, strut_t
 void strut_add_displacements(strut_figure *figure, strut_panel *panel, const strut_model *model,
                              const double *from, const double *to) {
   enum { MOST = 200 };
+  const strut_pen pen = {.colour = strut_palette_thing(2), .width = 0.8};
+  if (model->node_count <= MOST) strut_add_key(figure, STRUT_KEY_ARROW, pen, "displacement");
   for (int32_t i = 0; i < model->node_count && model->node_count <= MOST; i++)
-    strut_add_segment(figure, panel, STRUT_TRAIL_ARROW, strut_displacement_pen(), from + 2 * i,
-                      to + 2 * i);
+    strut_add_segment(figure, panel, STRUT_TRAIL_ARROW, pen, from + 2 * i, to + 2 * i);
 }
 
 strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                               const char *text) {
+  for (size_t i = 0; i < figure->key_count && text; i++)
+    if (figure->keys[i].text && strcmp(figure->keys[i].text, text) == 0) return &figure->keys[i];
   strut_key_item *item = ADD(figure, figure->keys, figure->key_count);
   item->sign = sign;
   item->pen = pen;
@@ -144,15 +147,11 @@ const char *strut_figure_text(strut_figure *figure, const char *format, ...) {
   return kept ? kept : "";
 }
 
-double *strut_figure_numbers(strut_figure *figure, size_t count) {
+double *strut_figure_numbers(strut_figure *figure, const double *from, size_t count) {
   double *numbers = strut_arena_allocate(&figure->arena, count + 1, sizeof *numbers);
   figure->failed = figure->failed || !numbers;
+  if (numbers && from) memcpy(numbers, from, count * sizeof *numbers);
   return numbers;
-}
-
-double *strut_figure_copy(strut_figure *figure, const double *from, size_t count) {
-  double *numbers = strut_figure_numbers(figure, count);
-  return numbers ? memcpy(numbers, from, count * sizeof *numbers) : NULL;
 }
 
 strut_colour_scale strut_force_scale(double limit, const strut_beyond *beyond) {

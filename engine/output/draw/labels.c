@@ -218,15 +218,10 @@ static void note_omitted(strut_labels *labels, strut_canvas *canvas, size_t coun
 
 void strut_labels_place(strut_labels *labels, strut_canvas *canvas) {
   size_t omitted = 0;
-  for (size_t i = 1; i < labels->count; i++) { /* by importance; equal ones keep their order */
-    const strut_label moved = labels->list[i];
-    size_t k = i;
-    for (; k > 0 && labels->list[k - 1].priority < moved.priority; k--)
-      labels->list[k] = labels->list[k - 1];
-    labels->list[k] = moved;
-  }
-  for (size_t i = 0; i < labels->count; i++)
-    if (!place_label(labels, &labels->list[i], canvas)) omitted++;
+  for (int priority = STRUT_HIGHEST_PRIORITY; priority >= 0; priority--)
+    for (size_t i = 0; i < labels->count; i++)
+      if (labels->list[i].priority == priority)
+        omitted += !place_label(labels, &labels->list[i], canvas);
   labels->count = 0;
   if (omitted) note_omitted(labels, canvas, omitted);
 }

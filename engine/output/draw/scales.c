@@ -67,10 +67,6 @@ strut_pen strut_series_pen(size_t look) {
   return pen;
 }
 
-strut_pen strut_displacement_pen(void) {
-  return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8};
-}
-
 bool strut_member_is_driven(const strut_scene *scene, size_t member) {
   for (size_t i = 0; i < scene->actuator_count; i++)
     if (scene->actuators[i].member == (int32_t)member) return true;

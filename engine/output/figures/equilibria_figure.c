@@ -6,8 +6,7 @@
 #include "engine/output/draw/figure.h"
 #include "engine/output/figures/statics_figures.h"
 
-enum { STANDING, ASIDE, MOST_CARDS = 12, MOST_ASIDE = 6 };
-enum { ARC = 41, FEW = 4 };
+enum { MOST_CARDS = 12, ARC = 41, FEW = 4 };
 
 static const double COLLAPSED = 1.0 / 3.0;     /* most of the cards with forces beyond the scale */
 static const double MARGIN = 17, LADDER = 150; /* [pt] */
@@ -18,16 +17,16 @@ static const double OUTLYING = 1.0 / 3.0;      /* so many of the barriers may li
 typedef struct picture {
   const strut_model *model;
   const strut_equilibria *all;
-  /* By energy: those that stand, and floppy ones; further stable ones. */
-  size_t *list[2], count[2], drawn[2];
-  size_t floppy_count; /* of the first */
+  size_t *list, count, cards; /* by energy: those that stand, and floppy ones; drawn */
+  size_t floppy, aside;       /* of these; other stable ones, */
+  bool none;                  /* which are drawn if none stands */
   double size[2], force_limit, contact_limit, largest_energy;
   strut_beyond beyond; /* force_limit */
   strut_figure figure;
 } picture;
 
 static const strut_equilibrium *card_of(const picture *self, size_t place) {
-  return &self->all->list[self->list[STANDING][place]];
+  return &self->all->list[self->list[place]];
 }
 
 /* ---- the ladder ---- */
@@ -70,7 +69,7 @@ static void add_arc(picture *self, strut_series *arcs, size_t k, const double *l
 static void add_name(picture *self, strut_panel *panel, double x, double y, const char *text,
                      bool level) {
   strut_label *mark = strut_add_mark(&self->figure, panel, x, y, text);
-  bool large = level && self->drawn[STANDING] <= FEW;
+  bool large = level && self->cards <= FEW;
   mark->font.size = large ? 8 : 7, mark->font.bold = large;
   mark->gap = level ? 3 : 2;
   mark->angle = (level ? -0.5 : 0.5) * STRUT_PI;
@@ -81,7 +80,7 @@ static void add_name(picture *self, strut_panel *panel, double x, double y, cons
 /* Adds a panel with the cards as levels and barriers between neighbours, of which few far above all leave the axis. */
 static void add_ladder(picture *self) {
   static const char *const no_names[] = {NULL};
-  const size_t cards = self->drawn[STANDING];
+  const size_t cards = self->cards;
   const double wider = cards > FEW ? 0.8 : 0.5; /* names are wider than levels */
   double level[MOST_CARDS], top[MOST_CARDS] = {0}, sorted[MOST_CARDS], range[2] = {0, 0};
   const char *heights[MOST_CARDS];
@@ -130,82 +129,72 @@ static const double *drawn_shape(const picture *self, size_t i) {
 }
 
 /* Adds an index to those sorted by energy; equal ones keep the list's order. */
-static void add_by_energy(picture *self, int kind, size_t added) {
+static void add_by_energy(picture *self, size_t added) {
   const strut_equilibrium *all = self->all->list;
-  size_t *list = self->list[kind], k = self->count[kind]++;
-  for (; k > 0 && all[list[k - 1]].energy > all[added].energy; k--) list[k] = list[k - 1];
-  list[k] = added;
+  size_t k = self->count++;
+  for (; k > 0 && all[self->list[k - 1]].energy > all[added].energy; k--)
+    self->list[k] = self->list[k - 1];
+  self->list[k] = added;
 }
 
-static bool choose_equilibria(picture *self) {
-  static const size_t most[] = {[STANDING] = MOST_CARDS, [ASIDE] = MOST_ASIDE};
-  size_t count = self->all->count;
-  for (int kind = 0; kind < 2; kind++) {
-    self->list[kind] = strut_arena_allocate(&self->figure.arena, count, sizeof *self->list[kind]);
-    if (!self->list[kind]) return false;
+/* Those that stand; where none does, all that are stable. */
+static void choose_equilibria(picture *self) {
+  self->list = strut_arena_allocate(&self->figure.arena, self->all->count, sizeof *self->list);
+  self->figure.failed = !self->list;
+  for (int all = 0; all < 2 && self->list && !self->count; all++) {
+    self->aside = 0;
+    self->none = all;
+    for (size_t i = 0; i < self->all->count; i++) {
+      const strut_equilibrium *equilibrium = &self->all->list[i];
+      bool floppy = equilibrium->outcome == STRUT_OUTCOME_FLOPPY;
+      self->largest_energy = fmax(self->largest_energy, fabs(equilibrium->energy));
+      if (equilibrium->point.label != STRUT_STABLE && equilibrium->point.label != STRUT_FLOPPY)
+        continue;
+      bool stands = equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy;
+      self->floppy += floppy, self->aside += !stands;
+      if (stands || all) add_by_energy(self, i);
+    }
   }
-  for (size_t i = 0; i < count; i++) {
-    const strut_equilibrium *equilibrium = &self->all->list[i];
-    bool floppy = equilibrium->outcome == STRUT_OUTCOME_FLOPPY;
-    self->largest_energy = fmax(self->largest_energy, fabs(equilibrium->energy));
-    if (equilibrium->point.label != STRUT_STABLE && equilibrium->point.label != STRUT_FLOPPY)
-      continue;
-    self->floppy_count += floppy;
-    add_by_energy(self, equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy ? STANDING : ASIDE,
-                  i);
-  }
-  for (int kind = 0; kind < 2; kind++)
-    self->drawn[kind] = self->count[kind] < most[kind] ? self->count[kind] : most[kind];
-  return true;
+  self->cards = self->count < MOST_CARDS ? self->count : MOST_CARDS;
 }
 
 /* The scales that all cards share: of forces but for collapsed states with far larger ones. */
 static void find_scales(picture *self) {
   double most[MOST_CARDS] = {0};
-  int kind = self->drawn[STANDING] ? STANDING : ASIDE;
-  for (size_t k = 0; k < self->drawn[kind]; k++) {
-    const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, self->list[kind][k]));
-    for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
-  }
-  for (size_t k = 0; k < self->drawn[STANDING]; k++) {
+  for (size_t k = 0; k < self->cards; k++) {
     const strut_equilibrium *card = card_of(self, k);
+    const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, self->list[k]));
+    for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
     most[k] = strut_largest(card->member_force, self->model->scene->member_count);
     self->contact_limit =
         fmax(self->contact_limit, strut_largest(card->normal, (size_t)card->contact_count));
   }
   double range[2] = {0, 0};
-  self->beyond = strut_leave_out(most, self->drawn[STANDING], COLLAPSED, range);
+  self->beyond = strut_leave_out(most, self->cards, COLLAPSED, range);
   self->force_limit = range[1];
   self->beyond.below = self->beyond.above; /* of either sign */
-}
-
-/* Adds the panel of an equilibrium, without its shape. */
-static strut_panel *add_panel(picture *self, size_t i) {
-  const strut_equilibrium *equilibrium = &self->all->list[i];
-  const strut_ground *ground = &self->model->scene->ground;
-  bool zero = !(fabs(equilibrium->energy) > ROUNDING * self->largest_energy);
-  strut_panel *panel = strut_add_panel(&self->figure);
-  panel->bounds = strut_bounds_of(self->model, drawn_shape(self, i));
-  if (ground->present && ground->slope == 0)
-    panel->bounds.low[1] = fmin(panel->bounds.low[1], ground->height);
-  strut_bounds_share(&panel->bounds, self->size);
-  panel->margin = MARGIN;
-  panel->note = strut_figure_text(&self->figure, "%s, %s",
-                                  strut_quantity_of(zero ? 0 : equilibrium->energy, 6, "J").text,
-                                  equilibrium->verdict);
-  return panel;
 }
 
 /* An equilibrium that stands, with the forces in it and of the ground. */
 static void add_card(picture *self, size_t i) {
   const strut_equilibrium *card = &self->all->list[i];
   const strut_contact_table *contacts = &self->model->contacts;
-  double *force = strut_figure_numbers(&self->figure, 2 * (size_t)contacts->count);
+  const strut_ground *ground = &self->model->scene->ground;
+  bool zero = !(fabs(card->energy) > ROUNDING * self->largest_energy);
+  double *force = strut_figure_numbers(&self->figure, NULL, 2 * (size_t)contacts->count);
   for (int32_t k = 0; force && k < card->contact_count && card->normal; k++)
     for (int32_t c = 0; c < contacts->count; c++)
       if (contacts->entry[c].node == card->contacts[k]) force[2 * c] = card->normal[k];
-  strut_panel *panel = add_panel(self, i);
+  strut_panel *panel = strut_add_panel(&self->figure);
   panel->title = card->name;
+  panel->note =
+      strut_figure_text(&self->figure, "%s, %s",
+                        strut_quantity_of(zero ? 0 : card->energy, 6, "J").text, card->verdict);
+  panel->bounds = strut_bounds_of(self->model, drawn_shape(self, i));
+  if (ground->present && ground->slope == 0)
+    panel->bounds.low[1] = fmin(panel->bounds.low[1], ground->height);
+  strut_bounds_share(&panel->bounds, self->size);
+  panel->margin = MARGIN;
   strut_shape *shape = strut_add_forces(&self->figure, panel, self->model, drawn_shape(self, i),
                                         card->member_force, self->force_limit);
   shape->names = true;
@@ -213,43 +202,29 @@ static void add_card(picture *self, size_t i) {
   shape->force_limit = self->contact_limit;
 }
 
-/* One that is stable but does not stand, in grey. */
-static void add_aside(picture *self, size_t i) {
-  strut_panel *panel = add_panel(self, i);
-  strut_shape *shape =
-      strut_add_ghost(&self->figure, panel, self->model, drawn_shape(self, i), 0.45);
-  shape->style.thinness = 0.4;
-  shape->style.no_supports = false;
-  shape->ground = true;
-}
-
 static const char *describe_all(picture *self) {
   strut_figure *figure = &self->figure;
-  size_t floppy = self->floppy_count, stable = self->count[STANDING] - floppy;
+  size_t stable = self->count - self->floppy, few = self->cards < self->count;
   const char *text =
       strut_figure_text(figure, "%zu stable equilibri%s%s", stable, stable == 1 ? "um" : "a",
-                        self->model->scene->ground.present ? " on the ground" : "");
-  if (floppy) text = strut_figure_text(figure, "%s, %zu floppy", text, floppy);
-  if (self->drawn[STANDING] < self->count[STANDING])
-    text = strut_figure_text(figure, "%s, the lowest are drawn", text);
-  if (!self->drawn[ASIDE]) return text;
-  text = strut_figure_text(
-      figure, "%s; grey: stable on static supports, but not at rest on the ground", text);
-  return self->drawn[ASIDE] == self->count[ASIDE]
-             ? text
-             : strut_figure_text(figure, "%s (the lowest of %zu)", text, self->count[ASIDE]);
+                        self->model->scene->ground.present && !self->none ? " on the ground" : "");
+  if (self->floppy) text = strut_figure_text(figure, "%s, %zu floppy", text, self->floppy);
+  if (few) text = strut_figure_text(figure, "%s, the lowest are drawn", text);
+  if (!self->aside || self->none)
+    return self->none ? strut_figure_text(figure, "%s, none at rest on the ground", text) : text;
+  return strut_figure_text(figure, "%s; %zu more are stable, but not at rest on the ground", text,
+                           self->aside);
 }
 
 strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                      const strut_equilibria *equilibria, strut_error *error) {
   picture p = {.model = model, .all = equilibria, .figure.title = model->scene->name};
-  p.figure.failed = !choose_equilibria(&p);
+  choose_equilibria(&p);
   find_scales(&p);
-  for (size_t k = 0; k < p.drawn[STANDING]; k++) add_card(&p, p.list[STANDING][k]);
-  for (size_t k = 0; k < p.drawn[ASIDE]; k++) add_aside(&p, p.list[ASIDE][k]);
+  for (size_t k = 0; k < p.cards; k++) add_card(&p, p.list[k]);
   add_ladder(&p);
   p.figure.note = describe_all(&p);
-  p.figure.yardstick = p.drawn[STANDING] > 0;
+  p.figure.yardstick = p.cards > 0;
   p.figure.scale = strut_force_scale(p.force_limit, &p.beyond);
   return strut_figure_draw(plot, &p.figure, error);
 }

@@ -282,8 +282,9 @@ static void add_shapes(path_picture *picture, strut_panel *panel) {
   size_t members = picture->model->scene->member_count;
   for (size_t i = 0; i < picture->stop_count; i++) {
     const strut_path_state *at = picture->stops[i].at;
-    double *q = strut_figure_numbers(figure, (size_t)picture->model->length), place[2];
-    double *taut = strut_figure_numbers(figure, members); /* of cables; other members ignore it */
+    double *q = strut_figure_numbers(figure, NULL, (size_t)picture->model->length), place[2];
+    double *taut =
+        strut_figure_numbers(figure, NULL, members); /* of cables; other members ignore it */
     for (int32_t c = 0; q && c < picture->model->length; c++) q[c] = enlarged(picture, at->q, c);
     for (size_t j = 0; taut && j < members; j++) taut[j] = at->force[j] > 0 ? 1.0 : 0.0;
     strut_shape *shape = strut_add_shape(figure, panel, picture->model, q);

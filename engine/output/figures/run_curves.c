@@ -121,7 +121,7 @@ static block find_block(const strut_run_scene *run, kind of, size_t first) {
     if (of == HEIGHTS && run->model->scene->ground.present) b.count = run->motion->contact_count;
     if (of == DRIVE) choose_driven(&b);
     b.columns = b.count;
-    double *values = strut_figure_numbers(run->page, run->frames * b.count);
+    double *values = strut_figure_numbers(run->page, NULL, run->frames * b.count);
     for (size_t k = 0; values && k < run->frames * b.count; k++)
       values[k] = derive(&b, k % b.count, k / b.count);
     b.values = values;
@@ -179,7 +179,7 @@ static double variation(const block *self, size_t item, size_t first) {
 
 /* Chooses the items that vary most, in the scene's order. Returns how many. */
 static size_t choose_curves(const block *self, size_t chosen[MOST_CURVES]) {
-  double *lively = strut_figure_numbers(self->run->page, self->count);
+  double *lively = strut_figure_numbers(self->run->page, NULL, self->count);
   size_t count = 0;
   for (size_t i = 0; lively && i < self->count; i++) {
     bool always = self->of == DRIVE || (self->of == DISPLACEMENT && i == 0);

@@ -68,7 +68,7 @@ static bool is_shape(const strut_run_scene *run, size_t frame) {
 
 void strut_run_find_limits(strut_run_scene *run) {
   const strut_trajectory *trajectory = run->motion;
-  double *most = strut_figure_numbers(run->page, run->frames);
+  double *most = strut_figure_numbers(run->page, NULL, run->frames);
   if (!most) return;
   for (size_t f = 0; f < run->frames && trajectory->force; f++)
     most[f] =
@@ -93,7 +93,7 @@ void strut_run_count_frames(strut_run_scene *run) {
 }
 
 double *strut_run_coordinates(const strut_run_scene *run, size_t frame) {
-  double *q = strut_figure_numbers(run->page, (size_t)run->model->length);
+  double *q = strut_figure_numbers(run->page, NULL, (size_t)run->model->length);
   if (q) memcpy(q, strut_run_positions(run, frame), 2 * run->motion->node_count * sizeof *q);
   return q;
 }

@@ -265,7 +265,7 @@ static void add_points(maker *self, size_t number, strut_panel *panel) {
 
 /* The different finite values of a column, ascending. */
 static void find_positions(maker *self, int column, int d) {
-  double *all = strut_figure_numbers(&self->page, self->table.row_count);
+  double *all = strut_figure_numbers(&self->page, NULL, self->table.row_count);
   size_t used = 0, *kept = &self->count[d];
   for (size_t i = 0; all && i < self->table.row_count; i++)
     if (isfinite(value_of(self, column, i))) all[used++] = value_of(self, column, i);
@@ -351,7 +351,7 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
                            *doubt = column_of(self, self->doubt);
   size_t count = self->count[0] * self->count[1];
   strut_map *map = strut_arena_allocate(&self->page.arena, 1, sizeof *map);
-  double *value = strut_figure_numbers(&self->page, count);
+  double *value = strut_figure_numbers(&self->page, NULL, count);
   bool *doubtful = strut_arena_allocate(&self->page.arena, count, sizeof *doubtful);
   const uint32_t *cells = find_rows(self, number);
   panel->map = map;

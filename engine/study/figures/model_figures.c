@@ -194,7 +194,7 @@ static void add_models(diagram *self) {
   const strut_tradeoff *tradeoff = self->tradeoff;
   size_t count = tradeoff->row_count, models = 0;
   size_t *order = strut_arena_allocate(&self->figure.arena, count + 1, sizeof *order);
-  double *cost = strut_figure_numbers(&self->figure, count);
+  double *cost = strut_figure_numbers(&self->figure, NULL, count);
   self->figure.failed = self->figure.failed || !order;
   for (size_t v = 0; v < tradeoff->variant_count; v++) models += tradeoff->variants[v].run;
   if (self->figure.failed || models < 2) return;
