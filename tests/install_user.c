@@ -13,17 +13,9 @@ static const char scene_text[] =
 
 #ifdef DRAW
 static strut_status draw(const strut_model *model, strut_error *error) {
-  strut_canvas *canvas = NULL;
-  const strut_structure_style style = {.node_names = true};
-  strut_bounds bounds = strut_bounds_none();
-  strut_status status = strut_canvas_open("shape.svg", 200, 100, "shape", &canvas, error);
-  if (status != STRUT_OK) return status;
-  strut_bounds_add(&bounds, model, model->start);
-  strut_window window = strut_window_fit(strut_canvas_box(canvas), bounds, 20);
-  strut_draw_structure(canvas, &window, model, model->start, &style);
-  status = strut_canvas_commit(canvas, error);
-  strut_canvas_free(canvas);
-  return status;
+  strut_figure figure = {.title = "shape"};
+  strut_add_shape(&figure, strut_add_panel(&figure), model, model->start)->names = true;
+  return strut_figure_draw(&(strut_plot){.path = "shape.svg", .width = 200}, &figure, error);
 }
 #endif
 

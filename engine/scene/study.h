@@ -394,11 +394,9 @@ typedef struct strut_study_figure {
   /* Of LINES besides, columns, or NULL: ends of whiskers; "no" where a line is dashed; where it or a column before it
      differs, a line ends; kinds of marks, "" for none, and what they are about. */
   const char *low, *high, *stable, *line, *mark, *thing;
-  const char *lost;    /* says what rows without y are, which then are at the upper edge; or NULL */
-  bool apart;          /* panels have curves and axes of their own, below each other */
-  const char *title;   /* or NULL */
-  size_t label_count;  /* 0: by the columns */
-  const char **labels; /* (label_count) of the curves */
+  const char *title;               /* or NULL */
+  size_t label_count;              /* 0: by the columns */
+  const char **labels;             /* (label_count) of the curves */
   const char *x_label, *y_label;   /* or NULL: the columns' names */
   double x_limits[2], y_limits[2]; /* in the columns' units; 0, 0: from the data */
   strut_study_colours colours;     /* of a MAP */

@@ -283,7 +283,7 @@ static strut_status plot_table(const strut_arguments *arguments, const strut_swe
   if (!status) status = strut_table_read(arguments->listener, path, &table);
   if (status) return status;
   strut_sweep_show_units(plan, &table);
-  status = strut_table_draw(&plot, &figure, &table, (strut_table_marks){0}, &error);
+  status = strut_table_draw(&plot, &figure, &table, false, &error);
   strut_arena_free(&table.arena);
   return strut_print_failure(status, &error);
 }

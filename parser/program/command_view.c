@@ -318,7 +318,7 @@ static strut_status run_plot(const strut_arguments *arguments) {
   status = strut_table_read(arguments->listener, arguments->model, &table);
   if (status != STRUT_OK) return status;
   status = read_figure(arguments, &table, &figure);
-  if (!status) status = strut_table_draw(&plot, &figure, &table, (strut_table_marks){0}, &error);
+  if (!status) status = strut_table_draw(&plot, &figure, &table, false, &error);
   if (error.message[0]) strut_print_error(&error);
   strut_arena_free(&table.arena);
   return status;

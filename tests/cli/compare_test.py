@@ -252,8 +252,8 @@ write("driven.yaml", text + "actuators: {drive: {member: ab, signal: {sine: {amp
 LEGEND = {"bar", "spring", "cable", "driven"}
 for words, first, legend in ((["driven.yaml", "driven.yaml"], ["one", "driven"], {"driven"}),
                              (["one.yaml", "driven.yaml"], ["one", "one"], {"spring", "driven"}),
-                             (["two.yaml", "one.yaml"], ["two", "2 nodes, 2 members, 1 kg"], {"spring", "cable"}),
-                             ([X, "one.yaml"], ["x-frame", "Snelson's X, standing 4 nodes"], {"bar", "spring", "cable"})):
+                             (["two.yaml", "one.yaml"], ["two", "nodes 2, members 2, mass 1 kg"], {"spring", "cable"}),
+                             ([X, "one.yaml"], ["x-frame", "Snelson's X, standing nodes 4"], {"bar", "spring", "cable"})):
     said = written(*words)
     check(LEGEND & set(said) == legend and [said[0], said[1][:len(first[1])]] == first, f"{words}: {said}")
 

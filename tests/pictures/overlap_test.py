@@ -3,8 +3,7 @@
 narrow figures of crowded structures, where single values far beyond a scale are told.
 
 SVGs say in their metadata where their texts are, which are drawn as outlines: a line
-<t box="X Y WIDTH HEIGHT">TEXT</t> for each, with the attribute cut where the page or a clip hides
-part of it. Units are points.
+<t box="X Y WIDTH HEIGHT">TEXT</t> for each. Units are points.
 
 usage: overlap_test.py STRUT [DIRECTORY]
 """
@@ -18,14 +17,18 @@ import sys
 from testing import check, fail, finish, strut, work, write
 
 HAIR = 0.3  # boxes may share so much [pt]
-TEXT = re.compile(r'<t box="(\S+) (\S+) (\S+) (\S+)"( cut="")?>(.*?)</t>')
+TEXT = re.compile(r'<t box="(\S+) (\S+) (\S+) (\S+)">(.*?)</t>')
+PAGE = re.compile(r'viewBox="(\S+) (\S+) (\S+) (\S+)"')
 
 
 def read_texts(path):
-    """[(box, cut?, text)] of a figure."""
+    """[(box, cut?, text)] of a figure: cut if it leaves the page."""
     with open(path, encoding="utf-8") as file:
-        return [(tuple(map(float, found[:4])), bool(found[4]), html.unescape(found[5]))
-                for found in TEXT.findall(file.read())]
+        written = file.read()
+    page = tuple(map(float, PAGE.search(written).groups()))
+    found = [(tuple(map(float, text[:4])), html.unescape(text[4])) for text in TEXT.findall(written)]
+    return [(box, min(box[:2]) < -HAIR or any(box[i] + box[i + 2] > page[i + 2] + HAIR for i in (0, 1)), text)
+            for box, text in found]
 
 
 def share(a, b):
@@ -40,7 +43,7 @@ def find_faults(path):
     faults = []
     for i, (box, cut, text) in enumerate(texts):
         if cut:
-            faults.append(f"'{text}' leaves the page or its panel")
+            faults.append(f"'{text}' leaves the page")
         if text.endswith("\u2026"):
             faults.append(f"'{text}' is shortened")
         for other, _, name in texts[:i]:

@@ -245,19 +245,17 @@ TEST(far_away) {
 }
 
 /* Lightness as the eye sees it, about: luma of the sRGB values. */
-static double lightness(strut_colour palette(double), double at) {
-  strut_colour c = palette(at);
+static double lightness(strut_colours colours, double at) {
+  strut_colour c = strut_palette_at(colours, at, colours == STRUT_COLOURS_SIGNED ? -1 : 0, 1);
   return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue;
 }
 
 TEST(palettes) {
-  for (double i = -100; i < 100; i++) {
-    assert_true(lightness(strut_palette_signed, (i + 1) / 100) >
-                lightness(strut_palette_signed, i / 100));
-    assert_true(i < 0 || lightness(strut_palette_sequence, (i + 1) / 100) >
-                             lightness(strut_palette_sequence, i / 100));
+  for (int k = 0; k < 2; k++) {
+    strut_colours colours = k ? STRUT_COLOURS_SIGNED : STRUT_COLOURS_SEQUENTIAL;
+    for (double i = k ? -100 : 0; i < 100; i++)
+      assert_true(lightness(colours, (i + 1) / 100) > lightness(colours, i / 100));
+    assert_true(lightness(colours, 5) < (k ? 0.75 : 0.78));
   }
-  assert_true(lightness(strut_palette_signed, 5) < 0.75);
-  assert_true(lightness(strut_palette_sequence, 5) < 0.78);
-  assert_true(strut_palette_signed(NAN).alpha > 0);
+  assert_true(strut_palette_at(STRUT_COLOURS_SIGNED, NAN, -1, 1).alpha > 0);
 }

@@ -69,25 +69,27 @@ static strut_tick_set ticks_of(const char *unit, bool logarithmic, double low, d
 /* One value far above all others is left out of a scale, several are not. */
 TEST(outliers) {
   double values[40], heights[] = {167e3, 64, 71, 87}, two[] = {1, 100};
-  double low = 0, high = 100;
-  strut_beyond beyond;
+  double range[] = {NAN, NAN};
   char text[STRUT_BEYOND_TEXT];
   for (int i = 0; i < 40; i++) values[i] = i == 20 ? 100 : i % 10;
-  strut_range_without_outliers(values, 40, &low, &high, &beyond);
-  assert_true(low == 0 && high == 9 && beyond.above == 1 && beyond.below == 0);
+  strut_beyond beyond = strut_leave_out(values, 40, 0.05, range);
+  assert_true(range[0] == 0 && range[1] == 9 && beyond.above == 1 && beyond.below == 0);
   const strut_file_unit cal = {"cal", 4.184}, none = {0};
   assert_string_equal(strut_beyond_text(&beyond, "point", "J", none, text),
                       "1 point beyond the scale, up to 100 J");
   assert_string_equal(strut_beyond_text(&beyond, "point", "J", cal, text),
                       "1 point beyond the scale, up to 23.9 cal");
   for (int i = 0; i < 40; i++) values[i] = i % 4 ? i % 10 : 100;
-  low = 0, high = 100;
-  strut_range_without_outliers(values, 40, &low, &high, &beyond);
-  assert_true(low == 0 && high == 100 && beyond.above == 0);
-  assert_true(strut_limit_without_outliers(heights, 4, 68, 1.0 / 3, &beyond) == 87);
+  range[0] = range[1] = NAN;
+  beyond = strut_leave_out(values, 40, 0.05, range);
+  assert_true(range[0] == 0 && range[1] == 100 && beyond.above == 0);
+  range[0] = 0, range[1] = 68;
+  beyond = strut_leave_out(heights, 4, 1.0 / 3, range);
+  assert_true(range[0] == 0 && range[1] == 87);
   assert_true(beyond.above == 1 && beyond.farthest == 167e3);
-  assert_true(strut_limit_without_outliers(two, 2, 0, 1.0 / 3, &beyond) == 100);
-  assert_true(beyond.above == 0);
+  range[1] = 0;
+  beyond = strut_leave_out(two, 2, 1.0 / 3, range);
+  assert_true(range[1] == 100 && beyond.above == 0);
   assert_string_equal(strut_beyond_text(&beyond, "point", "J", none, text), "");
 }
 
@@ -225,7 +227,7 @@ TEST(map) {
   strut_error error;
   assert_int_equal(strut_canvas_open_pixels(400, 300, 1, &canvas, &error), STRUT_OK);
   assert_true(strut_panels_settle(&panel, 1, &arena));
-  assert_true(strut_draw_chart(canvas, (strut_box){0, 0, 400, 300}, 0, &panel, true, &arena));
+  assert_true(strut_draw_chart(canvas, (strut_box){0, 0, 400, 300}, &panel, true, &arena));
   strut_arena_free(&arena);
   const unsigned char *low_left = pixel(canvas, 120, 220), *low_right = pixel(canvas, 320, 220);
   const unsigned char *high_left = pixel(canvas, 120, 80), *high_right = pixel(canvas, 320, 80);

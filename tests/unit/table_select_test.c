@@ -23,35 +23,30 @@ static const strut_table table = {
 static const int compared[] = {Y, WORD};
 
 static strut_status choose(int only, const char *text, int difference, bool between,
-                           strut_arena *arena, strut_table_rows *rows, strut_error *error) {
-  *rows = (strut_table_rows){.table = &table,
-                             .keys = {STRUT_NO_COLUMN, COLUMNS, X},
-                             .between = between,
-                             .values = compared,
-                             .value_count = 2};
-  return strut_table_rows_choose(rows, only, text, difference, arena, error);
-}
-
-static size_t count_shown(const strut_table_rows *rows) {
-  size_t count = 0;
-  for (size_t i = 0; i < ROWS; i++) count += rows->shown[i];
-  return count;
+                           strut_table *chosen, strut_error *error) {
+  const strut_table_pairing pairing = {.keys = {STRUT_NO_COLUMN, COLUMNS, X},
+                                       .between = between,
+                                       .values = compared,
+                                       .value_count = 2};
+  strut_status status = strut_table_choose(&table, only, text, NULL, chosen, error);
+  if (!status && difference != STRUT_NO_COLUMN)
+    status = strut_table_subtract(chosen, difference, &pairing, error);
+  return status;
 }
 
 static void check(bool between, const double *wanted, const char *marks) {
-  strut_table_rows less;
-  OWN(strut_arena) arena = {0};
-  assert_ok(choose(STRUT_NO_COLUMN, NULL, SIDE, between, &arena, &less, NULL));
-  assert_all_equal(count_shown(&less), 5, strut_table_compares(&less, Y), true);
-  assert_false(strut_table_compares(&less, X));
-  assert_all_texts(less.side[0], "a", less.side[1], "b");
-  for (size_t i = 0, k = 0; i < ROWS; i++) {
-    if (!less.shown[i]) continue;
-    double found = strut_table_number(&less, Y, i);
+  strut_table less = {0};
+  assert_ok(choose(STRUT_NO_COLUMN, NULL, SIDE, between, &less, NULL));
+  assert_all_equal(less.row_count, 5, less.column_count, COLUMNS + 2);
+  assert_all_texts(less.columns[Y].name, "y, b less a", less.columns[COLUMNS + 1].name, "a: other");
+  for (size_t k = 0, i = 0; k < 5; k++, i++) {
+    while (strcmp(side[i], "b") != 0) i++;
+    double found = less.columns[Y].value[k];
     assert_true(isnan(wanted[k]) ? isnan(found) : found == wanted[k]);
-    assert_int_equal(strut_table_differs(&less, WORD, i), marks[k++] == '1');
-    assert_string_equal(side[i], "b");
+    assert_int_equal(*less.columns[COLUMNS + 1].text[k] != 0, marks[k] == '1');
+    assert_true(strcmp(less.columns[SIDE].text[k], "b") == 0 && less.columns[X].value[k] == x[i]);
   }
+  strut_arena_free(&less.arena);
 }
 
 /* b has x = 0, 2, 1, 4 in panel p and 2 in panel q, in that order. */
@@ -63,31 +58,30 @@ TEST(differences) {
 }
 
 TEST(only) {
-  strut_table_rows some;
+  strut_table some = {0}, none = {0};
   strut_table_groups groups;
-  OWN(strut_arena) arena = {0};
-  assert_ok(choose(COLUMNS, "q", STRUT_NO_COLUMN, false, &arena, &some, NULL));
-  assert_int_equal(count_shown(&some), 2);
-  assert_true(strut_table_number(&some, Y, 7) == 50 && strut_table_number(&some, Y, 8) == 7);
-  assert_true(some.shown[7] && some.shown[8] && isnan(strut_table_number(&some, SIDE, 7)));
+  assert_ok(choose(COLUMNS, "q", STRUT_NO_COLUMN, false, &some, NULL));
+  assert_int_equal(some.row_count, 2);
+  assert_true(some.columns[Y].value[0] == 50 && some.columns[Y].value[1] == 7);
+  assert_null(some.columns[SIDE].value);
   assert_ok(strut_table_groups_find(&some, SIDE, 2, "", &groups, NULL));
   assert_int_equal(groups.count, 2);
   assert_all_texts(groups.name[0], "b", groups.name[1], "a"); /* not the order of all rows */
-  assert_int_equal(choose(COLUMNS, "r", STRUT_NO_COLUMN, false, &arena, &some, NULL), STRUT_USAGE);
+  assert_int_equal(choose(COLUMNS, "r", STRUT_NO_COLUMN, false, &none, NULL), STRUT_USAGE);
+  strut_arena_free(&some.arena);
+  strut_arena_free(&none.arena);
 }
 
 /* Both at once, and every allocation fails once. */
 TEST(no_memory) {
   REFUSE_EACH(n, status, 1) {
-    strut_table_rows chosen;
+    strut_table chosen = {0};
     strut_error error = {0};
-    OWN(strut_arena) arena = {0};
-    status = refused(n, choose(COLUMNS, "p", SIDE, true, &arena, &chosen, &error));
-    if (status == STRUT_OK) {
-      assert_int_equal(count_shown(&chosen), 4);
-      assert_true(strut_table_number(&chosen, Y, 2) == 15);
-    } else {
+    status = refused(n, choose(COLUMNS, "p", SIDE, true, &chosen, &error));
+    if (status == STRUT_OK)
+      assert_true(chosen.row_count == 4 && chosen.columns[Y].value[1] == 15);
+    else
       assert_true(error.message[0]);
-    }
+    strut_arena_free(&chosen.arena);
   }
 }

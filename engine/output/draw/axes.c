@@ -269,6 +269,7 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
 /* Ranges of axes, of colours and of views that a figure leaves to its data. */
 
 static const double ROOM = 0.06;     /* above and below the data */
+static const double FEW = 0.05;      /* outliers, of all values */
 static const double ONE_SIGN = 1e-9; /* noise of the other sign makes no signed quantity */
 
 /* Widens the axes that are not NULL by all that a panel shows. */
@@ -277,7 +278,7 @@ static void include_panel(const strut_panel *panel, strut_axis *x, strut_axis *y
   for (size_t i = 0; i < panel->series_count; i++) {
     const strut_series *series = &panel->series[i];
     for (const strut_point *p = series->points; p < series->points + series->count; p++) {
-      if (!isfinite(p->x) || (!isfinite(p->y) && !panel->lost)) continue;
+      if (!isfinite(p->x) || !isfinite(p->y)) continue;
       if (x) strut_axis_include(x, p->x);
       for (int k = 0; y && k < 3; k++)
         strut_axis_include(y, k == 0 ? p->y : k == 1 ? p->low : p->high);
@@ -306,25 +307,25 @@ static size_t gather(const strut_panel *panels, size_t count, bool scale, double
   return known;
 }
 
-/* Narrows a range to what is seen of those numbers. False: out of memory. */
-static bool narrow(const strut_panel *panels, size_t count, bool scale, strut_axis *range,
-                   strut_beyond *beyond, strut_arena *arena) {
+/* The range of what is seen of those numbers. False: out of memory. */
+static bool find_range(const strut_panel *panels, size_t count, bool scale, double range[2],
+                       strut_beyond *beyond, strut_arena *arena) {
   size_t known = gather(panels, count, scale, NULL);
   double *values = strut_arena_allocate(arena, known + 1, sizeof *values);
+  range[0] = range[1] = (double)NAN;
   if (!values) return false;
   gather(panels, count, scale, values);
-  for (size_t i = 0; i < known && scale; i++) strut_axis_include(range, values[i]);
-  strut_range_without_outliers(values, known, &range->low, &range->high, beyond);
+  *beyond = strut_leave_out(values, known, FEW, range);
   return true;
 }
 
 /* The range of the colours; of a signed quantity with zero in the middle. */
 static bool settle_scale(const strut_panel *panels, size_t count, strut_colour_scale *scale,
                          strut_arena *arena) {
-  strut_axis range = strut_axis_of("", "");
+  double range[2];
   if (scale->high > scale->low) return true;
-  if (!narrow(panels, count, true, &range, &scale->beyond, arena)) return false;
-  scale->low = range.low, scale->high = range.high;
+  if (!find_range(panels, count, true, range, &scale->beyond, arena)) return false;
+  scale->low = range[0], scale->high = range[1];
   if (!(scale->high > scale->low) || strut_is_noise(&scale->low, &scale->high, scale->unit)) {
     double middle = isfinite(scale->low) ? scale->low : 0; /* one value, or none */
     scale->low = middle - (middle != 0 ? 0.5 * fabs(middle) : 0.5);
@@ -365,6 +366,7 @@ bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena) 
   strut_axis x = panels->x, y = panels->y;
   strut_colour_scale scale = panels->scale;
   strut_beyond beyond;
+  double range[2];
   bool fit_x = isnan(x.low) || isnan(x.high), fit_y = isnan(y.low) || isnan(y.high);
   bool cells = panels->map != NULL, trim = panels->outliers && fit_y && !y.logarithmic;
   for (size_t i = 0; i < count; i++)
@@ -372,7 +374,8 @@ bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena) 
   if (fit_y && panels->zero) strut_axis_include(&y, 0);
   double missing = fit_y ? panels->least - (y.high - y.low) : 0;
   if (missing > 0) y.low -= 0.5 * missing, y.high += 0.5 * missing;
-  if (trim && !narrow(panels, count, false, &y, &beyond, arena)) return false;
+  if (trim && !find_range(panels, count, false, range, &beyond, arena)) return false;
+  if (trim && beyond.below + beyond.above) y.low = range[0], y.high = range[1];
   strut_axis_settle(&x, fit_x && !cells ? panels->room : 0);
   strut_axis_settle(&y, fit_y && !cells ? ROOM : 0);
   if (scale.name && !settle_scale(panels, count, &scale, arena)) return false;

@@ -160,15 +160,6 @@ strut_box strut_text_box(strut_canvas *canvas, const char *text, strut_font font
   return measure_layout(canvas, false);
 }
 
-/* True if the box is on the page and inside the clip, but for a hair. */
-static bool is_unclipped(const strut_canvas *canvas, const strut_box *box) {
-  const double hair = 0.3; /* [pt] */
-  double x1, y1, x2, y2;
-  cairo_clip_extents(canvas->cairo, &x1, &y1, &x2, &y2);
-  return box->x >= x1 - hair && box->y >= y1 - hair && box->x + box->width <= x2 + hair &&
-         box->y + box->height <= y2 + hair;
-}
-
 /* Adds letters of a text. */
 static void add_letters(strut_buffer *out, const char *text, size_t count) {
   for (const char *end = text + count; text < end; text++) {
@@ -185,8 +176,7 @@ static void note_text(strut_canvas *canvas, const strut_box *ink) {
   strut_buffer *out = &canvas->texts;
   if (canvas->format != STRUT_PICTURE_SVG || !isfinite(ink->x + ink->y)) return;
   strut_c_locale locale = strut_c_locale_enter();
-  strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\"%s>", ink->x, ink->y, ink->width,
-                   ink->height, is_unclipped(canvas, ink) ? "" : " cut=\"\"");
+  strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\">", ink->x, ink->y, ink->width, ink->height);
   strut_c_locale_leave(locale);
   const char *text = pango_layout_get_text(canvas->layout);
   add_letters(out, text, strlen(text));

@@ -114,6 +114,7 @@ STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const c
 /** A text's width and height [pt], unrotated; zero without one. */
 STRUT_API strut_box strut_text_box(strut_canvas *canvas, const char *text, strut_font font);
 
+enum { STRUT_HIGHEST_PRIORITY = 3 };
 /** A text beside what it names. */
 typedef struct strut_label {
   const char *text;
@@ -123,7 +124,7 @@ typedef struct strut_label {
   double angle;        /* preferred direction, counterclockwise from the right */
   double steady;       /* how much that matters: 0 not at all, 1 usually */
   strut_box inside;    /* the text stays in here; zero: the page */
-  int priority;        /* higher ones are placed first */
+  int priority;        /* 0 to STRUT_HIGHEST_PRIORITY; higher ones are placed first */
   bool loose;          /* names nothing at its place: no line leads there */
   bool dot, ring;      /* a filled circle there; an empty one around what is there */
   strut_colour colour; /* of the dot */
@@ -150,24 +151,15 @@ STRUT_API struct strut_file *strut_canvas_file(strut_canvas *canvas);
 
 /* Colours that remain distinguishable in grey print and with colour blindness. */
 
-/**
- * A signed quantity from -1 to 1 (clamped), such as a force relative to the largest: from deep blue
- * (compression) over grey to orange (tension). Brightness increases throughout, so that grey print
- * shows the sign too, and stays visible on white.
- */
-STRUT_API strut_colour strut_palette_signed(double value);
-/** A quantity from 0 to 1, dark to bright: time along a path, height of a field. */
-STRUT_API strut_colour strut_palette_sequence(double value);
-
 /** Colour scales of maps and of the bars beside drawings. */
 typedef enum strut_colours {
   STRUT_COLOURS_AUTO,       /* of a map: diverging where values have both signs, else sequential */
-  STRUT_COLOURS_SEQUENTIAL, /* strut_palette_sequence from low to high */
-  STRUT_COLOURS_DIVERGING,  /* of areas: from blue over near white at 0 in the middle to brown */
-  STRUT_COLOURS_GREY,       /* dark to bright from low to high */
-  STRUT_COLOURS_SIGNED      /* strut_palette_signed, 0 in the middle */
+  STRUT_COLOURS_SEQUENTIAL, /* dark to bright from low to high: time along a path, height of a field */
+  STRUT_COLOURS_DIVERGING, /* of areas: from blue over near white at 0 in the middle to brown */
+  STRUT_COLOURS_GREY,      /* dark to bright from low to high */
+  STRUT_COLOURS_SIGNED /* from deep blue (compression) over grey at 0 to orange: ever brighter, visible on white */
 } strut_colours;
-/** The colour of `value` on a scale from low to high; not AUTO. */
+/** The colour of `value`, clamped, on a scale from low to high; not AUTO. */
 STRUT_API strut_colour strut_palette_at(strut_colours colours, double value, double low,
                                         double high);
 /** The i-th colour for unordered things; repeats after STRUT_PALETTE_THINGS. */

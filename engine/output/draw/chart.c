@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The chart of a panel: title, legend, bands, axes, cells, lines, points, marks. */
+/* The chart of a panel: legend, bands, axes, cells, lines, points, marks. */
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
@@ -9,10 +9,10 @@
 #include "engine/output/draw/painter.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
-static const double PADDING = 3, TITLE = 8.5, TITLE_GAP = 2.5, WIDEST = 150;
+static const double PADDING = 3, WIDEST = 150;                                  /* [pt] */
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 /* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
-static const double TURN = 1.25, VISIBLE = 8, COLUMN = 4;
+static const double TURN = 1.25, VISIBLE = 8, COLUMN = 1;
 enum { FEW_POINTS = 30, MARKERS = 8 };
 
 /* A series on the page. */
@@ -21,8 +21,7 @@ typedef struct line {
   size_t look, count;
   strut_pen pen;
   double (*at)[2]; /* (count) thinned, broken lines with NAN between */
-  size_t area_count;
-  double (*area)[2]; /* (area_count) its outline where it turns too often to be seen; else NULL */
+  bool area;       /* it turns too often to be seen */
 } line;
 
 /** A chart being drawn. */
@@ -54,13 +53,11 @@ static bool has_markers(const strut_panel *panel, const strut_series *series) {
 static strut_fill category_fill(size_t i) {
   /* Distinguishable in grey: light and dark alternate, and repeated colours are hatched. */
   static const unsigned order[] = {0xF2C14E, 0x2F6DB5, 0x8C2D62, 0xBFD8EA, 0x4C9F70, 0xE7E7E7};
-  static const strut_hatch hatches[] = {STRUT_HATCH_NONE, STRUT_HATCH_RISING, STRUT_HATCH_FALLING,
-                                        STRUT_HATCH_LEVEL};
   size_t count = sizeof order / sizeof *order;
   unsigned rgb = order[i % count];
   return (strut_fill){
       .colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, 1},
-      .hatch = hatches[i / count % 4],
+      .hatch = (strut_hatch)(i / count % (STRUT_HATCH_LEVEL + 1)),
       .hatch_colour = strut_grey(0.3)};
 }
 
@@ -158,40 +155,18 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
 static void place(const chart *self, const line *l, size_t k, double at[2]) {
   const strut_point *p = &l->series->points[k];
   const strut_box *frame = &self->axes.frame;
-  bool lost = self->panel->lost && !isfinite(p->y);
   bool zero = self->axes.y.logarithmic && p->y == 0;
   at[0] = at[1] = (double)NAN;
-  if (!isfinite(p->x) || (!isfinite(p->y) && !lost)) return;
+  if (!isfinite(p->x) || !isfinite(p->y)) return;
   if (self->axes.x.logarithmic && !(p->x > 0)) return;
-  strut_axes_point(&self->axes, p->x, lost || zero ? self->axes.y.high : p->y, at);
+  strut_axes_point(&self->axes, p->x, zero ? self->axes.y.high : p->y, at);
   if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
 }
 
-/* The outline of the least and largest values of (count) points of ascending x, column by column. */
-static void find_outline(const chart *self, line *l, size_t count) {
-  double left = l->at[0][0], column = -1;
-  size_t most = 2 * (size_t)((l->at[count - 1][0] - left) / COLUMN) + 2, used = 0;
-  double(*high)[2] = strut_arena_allocate(self->arena, 3 * most, sizeof *high);
-  double(*low)[2] = high + 2 * most;
-  for (size_t k = 0; high && k < count; k++) {
-    const double *at = l->at[k];
-    bool begins = floor((at[0] - left) / COLUMN) > column;
-    if (begins) column = floor((at[0] - left) / COLUMN), used += 2;
-    for (size_t i = used - 2; i < used; i++) { /* from the first to the last point of a column */
-      if (begins || i % 2) high[i][0] = low[i][0] = at[0];
-      high[i][1] = begins ? at[1] : fmin(high[i][1], at[1]); /* the page's y points down */
-      low[i][1] = begins ? at[1] : fmax(low[i][1], at[1]);
-    }
-  }
-  for (size_t i = 0; i < used; i++) memcpy(high[used + i], low[used - 1 - i], sizeof *high);
-  l->area = high, l->area_count = 2 * used;
-}
-
-/* An unbroken line that turns more often than can be seen gets an outline. */
-static void find_area(const chart *self, line *l) {
+/* An unbroken line that turns more often than can be seen is an area: pale, between least and largest. */
+static void find_area(line *l) {
   size_t turns = 0, count = l->count;
   double way = 0, before = 0; /* up and down in all; the latest step */
-  l->area = NULL;
   if (count && isnan(l->at[count - 1][0])) count--;
   for (size_t k = 1; k < count; k++) {
     double step = l->at[k][1] - l->at[k - 1][1];
@@ -201,7 +176,10 @@ static void find_area(const chart *self, line *l) {
     way += fabs(step);
   }
   if (turns < FEW_POINTS || way < VISIBLE * (double)turns) return;
-  if ((double)turns * TURN > l->at[count - 1][0] - l->at[0][0]) find_outline(self, l, count);
+  l->area = (double)turns * TURN > l->at[count - 1][0] - l->at[0][0];
+  if (!l->area) return;
+  l->count = strut_thin(l->at, count, COLUMN);
+  l->pen.colour = strut_faded(l->pen.colour, 0.35);
 }
 
 /* Fills the points of a line. Lines that change along them keep all points. */
@@ -212,7 +190,7 @@ static void place_line(const chart *self, line *l) {
   for (size_t k = 0; k < series->count; k++) whole = whole || series->points[k].unstable;
   for (size_t k = 0; k <= series->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
-    if (k < series->count && isfinite(series->points[k].y)) place(self, l, k, at);
+    if (k < series->count) place(self, l, k, at);
     bool known = isfinite(at[0]) && isfinite(at[1]);
     if (!known && !whole && used == start) continue;
     if (!known && !whole) used = start + strut_thin(l->at + start, used - start, GRAIN);
@@ -234,7 +212,7 @@ static bool place_lines(chart *self) {
     if (!l->at) return false;
     if (l->series->bar > 0) continue;
     place_line(self, l);
-    if (!l->series->cloud && !(l->series->pen.width > 0)) find_area(self, l);
+    if (!l->series->cloud && !(l->series->pen.width > 0)) find_area(l);
   }
   return self->lines != NULL;
 }
@@ -292,12 +270,6 @@ static void stroke(const chart *self, const line *l, size_t from, size_t to) {
 /* Stretches without a gap and of one stability, which share their ends. */
 static void draw_line(const chart *self, const line *l) {
   const strut_point *points = l->series->points;
-  const strut_fill fill = {.colour = strut_faded(l->pen.colour, 0.35)};
-  const strut_pen rim = {.colour = l->pen.colour, .width = 0.5};
-  if (l->area) {
-    strut_draw_polygon(self->canvas, (const double(*)[2])l->area, l->area_count, &fill, &rim);
-    return;
-  }
   for (size_t k = 0, from = 0; k < l->count; k++) {
     if (isnan(l->at[k][0])) {
       from = k + 1;
@@ -394,10 +366,6 @@ static strut_box cell_box(const chart *self, size_t k, size_t count) {
                         edge(map->ys, map->rows, row + 1)});
 }
 
-static bool look_alike(const strut_map *map, size_t a, size_t b) {
-  return map->value[a] == map->value[b] || (!has_result(map, a) && !has_result(map, b));
-}
-
 /* Hatching on a doubtful cell, a dot on one without a result. */
 static void mark_cell(const chart *self, size_t k) {
   const strut_map *map = self->panel->map;
@@ -410,14 +378,14 @@ static void mark_cell(const chart *self, size_t k) {
                       fmin(1.0, 0.25 * fmin(box.width, box.height)), &dot, NULL);
 }
 
-/* Of a large map, neighbours in a row that look alike are drawn as one. */
+/* Of a large map, equal neighbours in a row are drawn as one. */
 static void draw_map(const chart *self) {
   enum { MANY_CELLS = 10000 };
   const strut_map *map = self->panel->map;
   size_t cells = map->columns * map->rows, joined;
   for (size_t k = 0; k < cells; k += joined) {
     for (joined = 1; cells >= MANY_CELLS && (k + joined) % map->columns; joined++)
-      if (!look_alike(map, k, k + joined)) break;
+      if (map->value[k + joined] != map->value[k]) break;
     strut_fill fill = cell_fill(self->panel, k);
     strut_box box = cell_box(self, k, joined);
     box.width += 0.4, box.y -= 0.4, box.height += 0.4;
@@ -440,8 +408,7 @@ static void draw_mark(const chart *self, const strut_label *mark) {
     label.dot = label.ring = false;
     label.angle = (above ? -0.5 : 0.5) * STRUT_PI;
     label.gap = STRUT_BEYOND_SIZE + 1;
-    strut_draw_beyond(self->canvas, label.at[0], label.at[1], (const double[2]){0, above ? -1 : 1},
-                      0);
+    strut_draw_beyond(self->canvas, label.at[0], label.at[1], (const double[2]){0, above ? -1 : 1});
   }
   strut_draw_label(self->canvas, &label);
 }
@@ -453,19 +420,14 @@ static void mark_beyond(const chart *self) {
   char text[STRUT_BEYOND_TEXT];
   for (size_t i = 0; i < self->panel->series_count; i++) {
     const strut_series *series = &self->panel->series[i];
-    const strut_point *farthest = NULL; /* of the excursion that k is in */
-    for (size_t k = 0; k <= series->count; k++) {
-      const strut_point *p = k < series->count ? &series->points[k] : NULL;
-      bool out = p && (p->y > axis->high || p->y < axis->low);
-      if (out && (!farthest || fabs(p->y) > fabs(farthest->y))) farthest = p;
-      if (out) {
-        beyond.above++;
-        if (fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
-      } else if (farthest) {
-        strut_label mark = strut_mark_of(farthest->x, farthest->y, NULL);
-        draw_mark(self, &mark);
-        farthest = NULL;
-      }
+    bool before = false;
+    for (const strut_point *p = series->points; p < series->points + series->count; p++) {
+      bool out = p->y > axis->high || p->y < axis->low;
+      const strut_label mark = {.at = {p->x, p->y}};
+      beyond.above += out;
+      if (out && fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
+      if (out && !before) draw_mark(self, &mark);
+      before = out;
     }
   }
   draw_note(self, strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text));
@@ -475,7 +437,7 @@ static void draw_data(const chart *self) {
   const strut_panel *panel = self->panel;
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
   const line *end = self->lines + panel->series_count;
-  bool lost = false, areas = false;
+  bool areas = false;
   strut_canvas_clip(self->canvas, self->axes.frame);
   draw_bands(self);
   strut_canvas_unclip(self->canvas);
@@ -495,43 +457,29 @@ static void draw_data(const chart *self) {
     if (!l->series->cloud) draw_points(self, l);
   if (panel->outliers) mark_beyond(self);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(self, &panel->marks[i]);
-  for (size_t i = 0; i < panel->series_count && panel->lost && !lost; i++)
-    for (size_t k = 0; k < panel->series[i].count; k++)
-      lost = lost || !isfinite(panel->series[i].points[k].y);
-  if (lost) draw_note(self, panel->lost);
   if (panel->remark) draw_note(self, panel->remark);
   for (const line *l = self->lines; l < end; l++) areas = areas || l->area;
   if (areas) draw_note(self, "areas: ranges of oscillations");
 }
 
-double strut_chart_title(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool draw) {
-  const strut_box frame = strut_axes_place(canvas, box, panel->x, panel->y).frame;
-  const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = frame.width};
-  double height = strut_text_box(canvas, panel->title, font).height;
-  if (draw) strut_draw_text(canvas, frame.x + 0.5 * frame.width, box.y, panel->title, font);
-  return height > 0 ? height + TITLE_GAP : 0;
-}
-
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, double title, const strut_panel *panel,
-                      bool legend, strut_arena *arena) {
+bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
+                      strut_arena *arena) {
   chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
   if (!items) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
-  strut_box rest = box;
-  c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
-  const strut_box key = {c.axes.frame.x + PADDING, rest.y + title + PADDING,
+  c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
+  const strut_box key = {c.axes.frame.x + PADDING, box.y + PADDING,
                          fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
   double above = strut_draw_key(canvas, key, items, count, true).height;
-  above = title + (count ? above + 2 * PADDING : 0);
-  const strut_box scale = {c.axes.frame.x, rest.y + above, fmin(c.axes.frame.width, WIDEST),
+  if (count) above += 2 * PADDING;
+  const strut_box scale = {c.axes.frame.x, box.y + above, fmin(c.axes.frame.width, WIDEST),
                            STRUT_SCALE_HEIGHT};
   if (panel->scale.name) above += scale.height;
-  rest.y += above, rest.height -= above;
-  c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
+  box.y += above, box.height -= above;
+  c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
   if (!place_lines(&c)) return false;
-  strut_chart_title(canvas, box, panel, true);
   draw_data(&c);
   if (panel->scale.name) strut_draw_colour_scale(canvas, scale, &panel->scale);
   return true;

@@ -64,14 +64,10 @@ typedef struct strut_beyond {
   double farthest;     /* of them, by magnitude */
 } strut_beyond;
 /**
- * The limit of a scale for (count) magnitudes, which are sorted, beside `other` that it has to hold: up to `share` of
- * them are left out where the others take less than a quarter of it.
+ * Widens a range that has to be held, or (NAN, NAN), to hold (count) values, which are sorted: but for a share of
+ * them at most where the others take less than a quarter of it. Those that are not finite do not count.
  */
-STRUT_API double strut_limit_without_outliers(double *magnitudes, size_t count, double other,
-                                              double share, strut_beyond *beyond);
-/** Likewise of values, of which a twentieth at most is left out, to both sides. Those that are not finite do not count. */
-STRUT_API void strut_range_without_outliers(double *values, size_t count, double *low, double *high,
-                                            strut_beyond *beyond);
+STRUT_API strut_beyond strut_leave_out(double *values, size_t count, double share, double range[2]);
 enum { STRUT_BEYOND_TEXT = 120 };
 /** "3 points beyond the axis, up to 167 kJ" in `text`; "" where there are none. `what` is one of them. */
 STRUT_API const char *strut_beyond_text(const strut_beyond *beyond, const char *what,

@@ -7,8 +7,12 @@
 #include "engine/output/draw/painter.h"
 
 static const double EDGE = 5, PAGE = 510.24, GAP = 12, INDENT = 30, WIDE = 330; /* [pt] */
-static const double ASPECT = 0.62, LOWEST = 165, HIGHEST = 260; /* of charts [1], [pt] */
+static const double ASPECT = 0.62, LOWEST = 165, HIGHEST = 260;  /* of charts [1], [pt] */
+static const double NARROWEST = 98, SHORTEST = 46, CAPTION = 26; /* views, their captions [pt] */
+static const double TALLEST = 1.2,
+                    FLATTEST = 0.6; /* of views: height over width at most, at least */
 static const double LINE_GAP = 1.5, HEADING_GAP = 6; /* below texts of the heading [pt] */
+static const double STICK = 17, BAR_WIDTH = 150;     /* of the foot [pt] */
 enum { COLUMNS = 3 };
 
 /* A page that is measured, then drawn. */
@@ -17,6 +21,7 @@ typedef struct page {
   const char *title;     /* NULL: none */
   strut_key_item *items; /* of the legend of all panels */
   size_t item_count;
+  double scale; /* of the latest view [pt/m] */
 } page;
 
 /* Settles what the figure leaves open, panels together or each by itself. False: out of memory. */
@@ -34,60 +39,127 @@ static bool begin_page(page *self, strut_figure *figure, const strut_plot *plot)
   return fine && self->items;
 }
 
-/* ---- the page ---- */
+/* ---- panels in rows ---- */
 
-/* Panels in a row with the first, and the width of each. */
-static size_t find_row(const page *self, size_t first, double inner, double *width) {
-  const strut_figure *figure = self->figure;
-  const strut_panel *panel = &figure->panels[first];
-  size_t left = figure->panel_count - first, count = 1;
-  double columns = 1;
-  if (left > 1 && panel[1].beside) { /* two by themselves */
-    columns = inner >= WIDE ? 2 : 1;
-    count = (size_t)columns;
-  } else if (figure->least_width > 0 && !panel->whole && !panel->beside) {
-    double most = figure->columns ? (double)figure->columns : COLUMNS;
-    columns =
-        fmax(1, fmin(fmin(most, floor(inner / figure->least_width)), (double)figure->panel_count));
-    while (count < (size_t)columns && count < left && !panel[count].shape_count &&
-           !panel[count].whole)
-      count++;
+/* Consecutive charts, or views, or a chart with a view beside it. */
+typedef struct group {
+  const strut_panel *panels;
+  size_t count, columns;
+  bool views, pair;
+  double width, gap, height; /* of a panel, between two, of a view [pt] */
+} group;
+
+/* What is above a panel; draws it if `draw`. Returns its height. */
+static double put_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
+                          bool draw) {
+  double indent = panel->shape_count ? 0 : INDENT, width = box.width - indent;
+  const strut_font bold = {.size = 8.5, .bold = true, .width = width, .lines = 3};
+  const strut_font grey = {.size = 7, .colour = strut_grey(0.3), .width = width - 4};
+  double title = strut_text_box(canvas, panel->title, bold).height + (panel->title ? 1 : 0);
+  double note = strut_text_box(canvas, panel->note, grey).height;
+  if (draw) strut_draw_text(canvas, box.x + indent, box.y, panel->title, bold);
+  if (draw) strut_draw_text(canvas, box.x + indent, box.y + title, panel->note, grey);
+  return title + (note > 0 ? note + 1 : 0);
+}
+
+/* As many views in a row as there is room for; or, on a page with a given aspect, as make the structures largest. */
+static void arrange_views(group *self, const strut_figure *figure, double inner) {
+  size_t most = figure->columns ? figure->columns : COLUMNS;
+  double least = figure->least_width > 0 ? figure->least_width : NARROWEST, largest = 0;
+  double size[2] = {0, 0}, around[2] = {0, 0}; /* what has to be seen [m], and beside it [pt] */
+  for (const strut_panel *view = self->panels; view < self->panels + self->count; view++)
+    for (int d = 0; d < 2; d++) {
+      double below = d ? strut_view_arrows(view) : 0;
+      size[d] = fmax(size[d], view->bounds.high[d] - view->bounds.low[d]);
+      around[d] = fmax(around[d], 2 * view->margin + below);
+    }
+  for (size_t columns = 1; columns <= most && columns <= self->count; columns++) {
+    double rows = (double)((self->count + columns - 1) / columns);
+    double wide = (inner - (double)(columns - 1) * GAP) / (double)columns, high = TALLEST * wide;
+    if (wide < least && columns > 1) break;
+    if (figure->aspect > 0)
+      high = fmax(figure->aspect * inner / rows - (self->count > 1 ? CAPTION : 0), SHORTEST);
+    double tall = fmax(high, FLATTEST * wide);
+    double scale = fmin((wide - around[0]) / size[0], (high - around[1]) / size[1]);
+    /* of equal scales the fewest rows win */
+    if (scale < largest * (1 - 1e-9) && figure->aspect > 0) continue;
+    largest = scale;
+    scale = fmin((wide - around[0]) / size[0], (tall - around[1]) / size[1]);
+    self->columns = columns, self->width = wide;
+    self->height = isfinite(scale) ? fmax(scale * size[1] + around[1], SHORTEST) : tall;
   }
-  *width = (inner - (panel[count - 1].beside ? (columns - 1) * GAP : 0)) / columns;
-  return count;
+  if (self->panels->height > 0) self->height = self->panels->height;
+}
+
+static group find_group(const strut_figure *figure, size_t first, double inner) {
+  size_t left = figure->panel_count - first;
+  const strut_panel *panels = &figure->panels[first];
+  group g = {.panels = panels, .count = 1, .columns = 1, .views = panels->shape_count > 0};
+  g.pair = left > 1 && panels[1].beside && inner >= WIDE;
+  while (g.count < left && (g.pair ? g.count < 2 : (panels[g.count].shape_count > 0) == g.views))
+    g.count++;
+  if (g.pair)
+    g.columns = 2;
+  else if (!g.views && figure->least_width > 0)
+    g.columns = (size_t)fmax(1, fmin(fmin((double)(figure->columns ? figure->columns : COLUMNS),
+                                          floor(inner / figure->least_width)),
+                                     (double)g.count));
+  g.gap = g.pair || g.views ? GAP : 0;
+  g.width = (inner - (double)(g.columns - 1) * g.gap) / (double)g.columns;
+  if (g.views) arrange_views(&g, figure, inner);
+  return g;
 }
 
 /* Names that stand upwards below a chart make it higher. */
-static double chart_height(const page *self, strut_canvas *canvas, const strut_panel *panel,
-                           double width) {
+static double chart_height(const strut_figure *figure, strut_canvas *canvas,
+                           const strut_panel *panel, double width) {
   strut_axes axes = {.upwards = false};
   if (panel->x.name_count)
     axes = strut_axes_place(canvas, (strut_box){0, 0, width, LOWEST}, panel->x, panel->y);
-  double aspect = self->figure->aspect > 0 ? self->figure->aspect : ASPECT;
+  double aspect = figure->aspect > 0 ? figure->aspect : ASPECT;
   double height = aspect * width, scale = panel->scale.name ? STRUT_SCALE_HEIGHT : 0;
-  if (self->figure->least_width > 0) height = fmax(LOWEST, fmin(height, HIGHEST));
+  if (figure->least_width > 0) height = fmax(LOWEST, fmin(height, HIGHEST));
   return panel->height > 0 ? panel->height : height + scale + (axes.upwards ? axes.ticks : 0);
 }
 
-/* The row of a chart; draws it if `fine`, which becomes false where memory is out. Returns its height. */
-static double put_row(page *self, strut_canvas *canvas, strut_box box, size_t first, size_t count,
-                      bool *fine) {
-  const strut_panel *panels = self->figure->panels;
-  double gap = panels[first + count - 1].beside ? GAP : 0, height = 0, title = 0;
-  for (size_t i = first; i < first + count; i++)
-    height = fmax(height, chart_height(self, canvas, &panels[i], box.width));
-  box.height = height;
-  for (size_t i = first; i < first + count; i++)
-    if (!panels[i].shape_count)
-      title = fmax(title, strut_chart_title(canvas, box, &panels[i], false));
-  for (size_t i = first; i < first + count && fine && *fine; i++, box.x += box.width + gap)
-    if (panels[i].shape_count)
-      strut_draw_view(canvas, box, &panels[i]);
+/* The row of (count) panels; draws it if `fine`, which becomes false where memory is out. Returns its height. */
+static double put_row(page *self, strut_canvas *canvas, strut_box box, const group *of,
+                      size_t first, size_t count, bool *fine) {
+  double caption = 0, height = of->height;
+  for (size_t i = first; i < first + count; i++) {
+    const strut_panel *panel = &of->panels[i];
+    caption = fmax(caption, put_caption(canvas, box, panel, false));
+    if (!of->views) height = fmax(height, chart_height(self->figure, canvas, panel, box.width));
+  }
+  for (size_t i = first; i < first + count && fine && *fine; i++, box.x += box.width + of->gap) {
+    const strut_panel *panel = &of->panels[i];
+    const strut_box below = {box.x, box.y + caption, box.width, height};
+    put_caption(canvas, box, panel, true);
+    if (panel->shape_count)
+      self->scale = strut_draw_view(canvas, below, panel).scale;
     else
-      *fine = strut_draw_chart(canvas, box, title, &panels[i], !self->figure->one_legend,
-                               &self->figure->arena);
-  return height;
+      *fine =
+          strut_draw_chart(canvas, below, panel, !self->figure->one_legend, &self->figure->arena);
+  }
+  return caption + height;
 }
+
+static double put_group(page *self, strut_canvas *canvas, strut_box box, const group *of,
+                        bool *fine) {
+  double top = box.y;
+  for (size_t i = 0, count; i < of->count; i += count) {
+    bool whole = of->panels[i].whole && !of->views;
+    strut_box row = box;
+    if (!whole) row.width = of->width;
+    for (count = 1; !whole && count < of->columns && i + count < of->count; count++)
+      if (!of->views && of->panels[i + count].whole) break;
+    if (i) row.y = box.y += of->gap;
+    box.y += put_row(self, canvas, row, of, i, count, fine);
+  }
+  return box.y - top;
+}
+
+/* ---- the page ---- */
 
 /* A text of the heading, which wraps; draws it if `draw`. Returns its height and the space below. */
 static double put_heading(strut_canvas *canvas, strut_box box, const char *text, strut_font font,
@@ -95,6 +167,23 @@ static double put_heading(strut_canvas *canvas, strut_box box, const char *text,
   font.width = box.width;
   if (draw) strut_draw_text(canvas, box.x, box.y, text, font);
   return text && *text ? strut_text_box(canvas, text, font).height + LINE_GAP : 0;
+}
+
+/* A scale bar below views so wide, keys, and the scale of colours; draws them if `draw`. Returns their height. */
+static double put_foot(const page *self, strut_canvas *canvas, strut_box box, double width,
+                       bool draw) {
+  const strut_figure *figure = self->figure;
+  bool bar = figure->scale.name && figure->scale.high > figure->scale.low;
+  bool stick = width > 0 && figure->yardstick;
+  double row = bar ? STRUT_SCALE_HEIGHT : stick ? STICK : 0;
+  double right = fmin(BAR_WIDTH, 0.5 * box.width);
+  strut_box key = strut_draw_key(canvas, box, figure->keys, figure->key_count, draw);
+  bool beside = !stick && key.width + right < box.width;
+  double height = beside ? fmax(key.height, row) : key.height + row;
+  const strut_box place = {box.x + box.width - right, box.y + height - row, right, row};
+  if (draw && bar) strut_draw_colour_scale(canvas, place, &figure->scale);
+  if (draw && stick) strut_draw_yardstick(canvas, box.x, box.y + height, width, self->scale);
+  return height;
 }
 
 /* Lays all out and draws it if `fine`. Returns the height of the page. */
@@ -110,23 +199,17 @@ static double put_page(page *self, strut_canvas *canvas, double width, bool *fin
   if (box.y > EDGE) box.y += HEADING_GAP - LINE_GAP;
   const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
   box.y += strut_draw_key(canvas, legend, self->items, self->item_count, draw).height;
-  for (size_t i = 0, count; i < figure->panel_count; i += count) {
-    const strut_panel *first = &figure->panels[i];
-    if (i > 0 && (first->shape_count || first[-1].shape_count)) box.y += GAP;
-    strut_box row = box;
-    count = find_row(self, i, box.width, &row.width);
-    if (count > 1 || !first->shape_count) {
-      box.y += put_row(self, canvas, row, i, count, fine);
-      continue;
-    }
-    while (i + count < figure->panel_count && first[count].shape_count &&
-           first[count].small == first->small)
-      count++;
-    box.y += strut_draw_views(canvas, box, figure, first, count, foot, draw);
+  for (size_t i = 0; i < figure->panel_count;) {
+    const group g = find_group(figure, i, box.width);
+    if (i) box.y += GAP;
+    box.y += put_group(self, canvas, box, &g, fine);
+    i += g.count;
+    if (!foot || !(g.views || i == figure->panel_count)) continue;
+    if (g.views || figure->key_count) box.y += 0.5 * GAP;
+    box.y += put_foot(self, canvas, box, g.views ? g.width : 0, draw);
     foot = false;
   }
-  if (foot && figure->key_count) box.y += 0.5 * GAP;
-  return box.y + (foot ? strut_draw_foot(canvas, box, figure, NULL, draw) : 0) + EDGE;
+  return box.y + EDGE;
 }
 
 /* What Fontconfig and Pango take for fonts and threads, the first time: without it they end the process [bytes]. */

@@ -93,11 +93,8 @@ typedef struct strut_shape {
   bool moving;
   bool names;                /* beside its nodes, where they cover little */
   const double (*forces)[2]; /* (contacts) of the ground [N]; or NULL */
-  double force_limit, arrow; /* their scale [N], [pt] */
+  double force_limit;        /* their scale [N] */
 } strut_shape;
-
-/** The pen of arrows of displacement, for keys. */
-STRUT_API strut_pen strut_displacement_pen(void);
 
 typedef enum strut_trail_kind {
   STRUT_TRAIL_LINE,     /* by its pen */
@@ -111,15 +108,13 @@ typedef struct strut_trail {
   size_t count;
   double (*at)[2]; /* (count) [m] */
   strut_pen pen;
-  double gap; /* left free at both ends of two points, of an arrow at its tip [pt] */
   bool below; /* below the shapes */
 } strut_trail;
 
 /* ---- both ---- */
 
 typedef struct strut_panel {
-  const char *title; /* may be NULL; of a view at its upper left corner */
-  const char *note;  /* of a view, in grey below the title; may be NULL */
+  const char *title, *note; /* above it, the note in grey; may be NULL */
   /* A view: structures in a window with one scale for x and y. */
   size_t shape_count, trail_count;
   strut_shape *shapes;
@@ -134,10 +129,9 @@ typedef struct strut_panel {
   strut_series *series;
   strut_band *bands;
   const strut_map *map;
-  const char *lost; /* says what points whose y is not finite are, at the upper edge; or NULL */
-  double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
-  double least;     /* such a range of y is at least so large, */
-  bool zero;        /* and holds zero */
+  double room;  /* of a range that is found, beside the data along x; along y it is 0.06 */
+  double least; /* such a range of y is at least so large, */
+  bool zero;    /* and holds zero */
   /* Both. */
   size_t mark_count;
   strut_label
@@ -148,7 +142,6 @@ typedef struct strut_panel {
   double height; /* [pt]; 0: by the figure's aspect */
   bool whole;    /* takes a row of its own */
   bool beside;   /* stands right of the panel before it, where the page is wide */
-  bool small;    /* a view beside many others */
 } strut_panel;
 
 /** Zero-initialise; strut_figure_draw frees what is in its arena. */
@@ -177,16 +170,14 @@ typedef struct strut_figure {
 STRUT_API strut_panel *strut_add_panel(strut_figure *figure);
 STRUT_API strut_series *strut_add_series(strut_figure *figure, strut_panel *panel,
                                          const char *label);
+/** One at NAN ends the line, and the next point begins another. */
 STRUT_API strut_point *strut_add_point(strut_figure *figure, strut_series *series, double x,
                                        double y);
-/** The line ends, and the next point begins another. */
-STRUT_API void strut_add_gap(strut_figure *figure, strut_series *series);
 STRUT_API strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,
                                      double high, const char *label);
 /** A text of 7 pt beside a place, as far away as a dot needs; or no text, for a dot or a ring alone. */
 STRUT_API strut_label *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
                                       const char *text);
-STRUT_API strut_label strut_mark_of(double x, double y, const char *text);
 STRUT_API strut_shape *strut_add_shape(strut_figure *figure, strut_panel *panel,
                                        const strut_model *model, const double *positions);
 /** One of a single colour, without nodes and supports, below others. */
@@ -204,19 +195,18 @@ STRUT_API void strut_add_place(strut_figure *figure, strut_trail *trail, const d
 STRUT_API strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel,
                                          strut_trail_kind kind, strut_pen pen, const double from[2],
                                          const double to[2]);
-/** Arrows from where a shape was to its nodes, unless there are many. */
+/** Arrows from where a shape was to its nodes, unless there are many, and their key. */
 STRUT_API void strut_add_displacements(strut_figure *figure, strut_panel *panel,
                                        const strut_model *model, const double *from,
                                        const double *to);
-/** An item of the key below the figure; without a text none. */
+/** An item of the key below the figure; without a text none, of equal ones the first. */
 STRUT_API strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                                         const char *text);
 /** A text in the arena, whatever the locale; "" where memory is out. */
 STRUT_API const char *strut_figure_text(strut_figure *figure, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/** (count) zeroed numbers in the arena, or a copy; NULL: memory is out. */
-STRUT_API double *strut_figure_numbers(strut_figure *figure, size_t count);
-STRUT_API double *strut_figure_copy(strut_figure *figure, const double *from, size_t count);
+/** (count) numbers in the arena, those of `from` or 0 where that is NULL; NULL: memory is out. */
+STRUT_API double *strut_figure_numbers(strut_figure *figure, const double *from, size_t count);
 /** The scale of signed forces; without a name where the limit is 0. */
 STRUT_API strut_colour_scale strut_force_scale(double limit, const strut_beyond *beyond);
 /**

@@ -11,8 +11,8 @@
 #include "engine/output/file.h"
 #include "engine/output/result_values.h"
 
-enum { TEXT = 800 };                            /* bytes of a text at most */
-static const double MARK_GAP = 4.2, NODE = 2.3; /* from a mark, of a node as drawn [pt] */
+enum { TEXT = 800 };                /* bytes of a text at most */
+static const double MARK_GAP = 4.2; /* [pt] */
 
 /* One more item of a list, whose address that is: zeroed, in the arena, or the spare. Room doubles. */
 static void *add(strut_figure *figure, void *list, size_t *count, size_t size) {
@@ -49,10 +49,6 @@ strut_point *strut_add_point(strut_figure *figure, strut_series *series, double 
   return point;
 }
 
-void strut_add_gap(strut_figure *figure, strut_series *series) {
-  strut_add_point(figure, series, (double)NAN, (double)NAN);
-}
-
 strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low, double high,
                            const char *label) {
   strut_band *band = ADD(figure, panel->bands, panel->band_count);
@@ -60,17 +56,13 @@ strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,
   return band;
 }
 
-strut_label strut_mark_of(double x, double y, const char *text) {
-  return (strut_label){.text = text,
-                       .font = {.size = 7, .halo = strut_faded(strut_grey(1), 0.85)},
-                       .at = {x, y},
-                       .gap = MARK_GAP};
-}
-
 strut_label *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
                             const char *text) {
   strut_label *mark = ADD(figure, panel->marks, panel->mark_count);
-  *mark = strut_mark_of(x, y, text);
+  *mark = (strut_label){.text = text,
+                        .font = {.size = 7, .halo = strut_faded(strut_grey(1), 0.85)},
+                        .at = {x, y},
+                        .gap = MARK_GAP};
   return mark;
 }
 
@@ -125,14 +117,16 @@ strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel, strut_t
 void strut_add_displacements(strut_figure *figure, strut_panel *panel, const strut_model *model,
                              const double *from, const double *to) {
   enum { MOST = 200 };
+  const strut_pen pen = {.colour = strut_palette_thing(2), .width = 0.8};
+  if (model->node_count <= MOST) strut_add_key(figure, STRUT_KEY_ARROW, pen, "displacement");
   for (int32_t i = 0; i < model->node_count && model->node_count <= MOST; i++)
-    strut_add_segment(figure, panel, STRUT_TRAIL_ARROW, strut_displacement_pen(), from + 2 * i,
-                      to + 2 * i)
-        ->gap = NODE;
+    strut_add_segment(figure, panel, STRUT_TRAIL_ARROW, pen, from + 2 * i, to + 2 * i);
 }
 
 strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                               const char *text) {
+  for (size_t i = 0; i < figure->key_count && text; i++)
+    if (figure->keys[i].text && strcmp(figure->keys[i].text, text) == 0) return &figure->keys[i];
   strut_key_item *item = ADD(figure, figure->keys, figure->key_count);
   item->sign = sign;
   item->pen = pen;
@@ -153,15 +147,11 @@ const char *strut_figure_text(strut_figure *figure, const char *format, ...) {
   return kept ? kept : "";
 }
 
-double *strut_figure_numbers(strut_figure *figure, size_t count) {
+double *strut_figure_numbers(strut_figure *figure, const double *from, size_t count) {
   double *numbers = strut_arena_allocate(&figure->arena, count + 1, sizeof *numbers);
   figure->failed = figure->failed || !numbers;
+  if (numbers && from) memcpy(numbers, from, count * sizeof *numbers);
   return numbers;
-}
-
-double *strut_figure_copy(strut_figure *figure, const double *from, size_t count) {
-  double *numbers = strut_figure_numbers(figure, count);
-  return numbers ? memcpy(numbers, from, count * sizeof *numbers) : NULL;
 }
 
 strut_colour_scale strut_force_scale(double limit, const strut_beyond *beyond) {

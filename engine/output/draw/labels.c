@@ -100,19 +100,6 @@ static bool is_free(const search *self, const strut_box *box) {
   return true;
 }
 
-/* True if a straight line from what is named to the box crosses no text. */
-static bool has_clear_line(const search *self, const strut_box *box) {
-  double end[2], length = nearest_point(box, self->label->at, end);
-  for (double along = 0.0; along < length; along += 2.0) {
-    const strut_box point = {self->label->at[0] + along / length * (end[0] - self->label->at[0]),
-                             self->label->at[1] + along / length * (end[1] - self->label->at[1]), 0,
-                             0};
-    for (size_t i = 0; i < self->labels->text_count; i++)
-      if (overlap(&point, &self->labels->texts[i])) return false;
-  }
-  return true;
-}
-
 /* Cost of being nearer to something else that is named in the same place. */
 static double confusion(const search *self, const strut_box *box) {
   double point[2], own = nearest_point(box, self->label->at, point), cost = 0.0;
@@ -137,12 +124,11 @@ static void try_place(search *self, double ring, int direction) {
   const strut_box box = settle_box(
       (strut_box){x - 0.5 * self->width, y - 0.5 * self->height, self->width, self->height});
   int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
-  bool led = ring >= LED;
-  double cost = DISTANCE * ring + TURN * label->steady * turn + (led ? LINE : 0.0);
+  double cost = DISTANCE * ring + TURN * label->steady * turn + (ring >= LED ? LINE : 0.0);
   if (cost >= self->cost || !is_free(self, &box)) return;
   cost += INK * strut_canvas_ink(self->canvas, box) +
           NEAR_INK * strut_canvas_ink(self->canvas, widened(box, AROUND)) + confusion(self, &box);
-  if (cost >= self->cost - 1e-9 || (led && !has_clear_line(self, &box))) return;
+  if (cost >= self->cost - 1e-9) return;
   self->cost = cost;
   self->best = box;
 }
@@ -232,15 +218,10 @@ static void note_omitted(strut_labels *labels, strut_canvas *canvas, size_t coun
 
 void strut_labels_place(strut_labels *labels, strut_canvas *canvas) {
   size_t omitted = 0;
-  for (size_t i = 1; i < labels->count; i++) { /* by importance; equal ones keep their order */
-    const strut_label moved = labels->list[i];
-    size_t k = i;
-    for (; k > 0 && labels->list[k - 1].priority < moved.priority; k--)
-      labels->list[k] = labels->list[k - 1];
-    labels->list[k] = moved;
-  }
-  for (size_t i = 0; i < labels->count; i++)
-    if (!place_label(labels, &labels->list[i], canvas)) omitted++;
+  for (int priority = STRUT_HIGHEST_PRIORITY; priority >= 0; priority--)
+    for (size_t i = 0; i < labels->count; i++)
+      if (labels->list[i].priority == priority)
+        omitted += !place_label(labels, &labels->list[i], canvas);
   labels->count = 0;
   if (omitted) note_omitted(labels, canvas, omitted);
 }

@@ -4,42 +4,39 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/output/draw/painter.h"
 
 void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size) {
-  enum { SHAPES = 5, CORNERS = 4 };
-  static const double corner[SHAPES][CORNERS][2] = {{{0}}, /* a circle */
-                                                    {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}},
-                                                    {{0, -1.3}, {1.2, 0.9}, {-1.2, 0.9}},
-                                                    {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}},
-                                                    {{0, 1.3}, {1.2, -0.9}, {-1.2, -0.9}}};
-  size_t shape = look % SHAPES, count = shape == 2 || shape == 4 ? 3 : 4;
+  static const struct {
+    int corners;         /* 0: a circle */
+    double radius, turn; /* of the first corner, down from the right, in turns */
+  } shapes[] = {{0, 1, 0}, {4, 1.41, 0.125}, {3, 1.35, -0.25}, {4, 1.3, 0}, {3, 1.35, 0.25}};
+  enum { SHAPES = sizeof shapes / sizeof *shapes, CORNERS = 4 };
   bool hollow = look / SHAPES % 2 == 1;
   const strut_colour own = strut_palette_thing(look), white = strut_grey(1);
   const strut_fill fill = {.colour = hollow ? white : own};
   const strut_pen edge = {.colour = hollow ? own : white, .width = hollow ? 0.8 : 0.4};
+  int count = shapes[look % SHAPES].corners;
   double at[CORNERS][2];
-  for (size_t i = 0; i < count; i++) {
-    at[i][0] = x + size * corner[shape][i][0];
-    at[i][1] = y + size * corner[shape][i][1];
+  for (int i = 0; i < count; i++) {
+    double angle = STRUT_TAU * (shapes[look % SHAPES].turn + (double)i / count);
+    at[i][0] = x + size * shapes[look % SHAPES].radius * cos(angle);
+    at[i][1] = y + size * shapes[look % SHAPES].radius * sin(angle);
   }
-  if (shape == 0)
+  if (count == 0)
     strut_draw_circle(canvas, x, y, size, &fill, &edge);
   else
-    strut_draw_polygon(canvas, (const double(*)[2])at, count, &fill, &edge);
+    strut_draw_polygon(canvas, (const double(*)[2])at, (size_t)count, &fill, &edge);
 }
 
-void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2],
-                       double outside) {
-  const double at[2] = {x, y}, size = STRUT_BEYOND_SIZE;
-  double tip[3][2];
-  for (int d = 0; d < 2; d++) {
-    double across = 0.45 * size * out[1 - d];
-    tip[0][d] = at[d] + outside * out[d];
-    tip[1][d] = tip[0][d] - size * out[d] + across;
-    tip[2][d] = tip[0][d] - size * out[d] - across;
-  }
-  strut_draw_polygon(canvas, (const double(*)[2])tip, 3, &(strut_fill){.colour = strut_grey(0.15)},
+void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2]) {
+  const double size = STRUT_BEYOND_SIZE, half = 0.45 * size;
+  const double foot[2] = {x - size * out[0], y - size * out[1]};
+  const double corners[3][2] = {{x, y},
+                                {foot[0] + half * out[1], foot[1] + half * out[0]},
+                                {foot[0] - half * out[1], foot[1] - half * out[0]}};
+  strut_draw_polygon(canvas, corners, 3, &(strut_fill){.colour = strut_grey(0.15)},
                      &(strut_pen){.colour = strut_grey(1), .width = 0.4});
 }
 
@@ -71,8 +68,8 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
   strut_draw_box(canvas, strip, NULL, &pen);
   for (int end = -1; end < 2; end += 2) /* values beyond the ends */
     if (end > 0 ? scale->beyond.above : scale->beyond.below)
-      strut_draw_beyond(canvas, end > 0 ? right : strip.x, strip.y + 0.5 * BAR,
-                        (const double[2]){end, 0}, STRUT_BEYOND_SIZE);
+      strut_draw_beyond(canvas, (end > 0 ? right : strip.x) + end * STRUT_BEYOND_SIZE,
+                        strip.y + 0.5 * BAR, (const double[2]){end, 0});
   for (size_t i = 0; i < set.count; i++) {
     double x = strip.x + strip.width * (set.at[i] - scale->low) / (scale->high - scale->low);
     strut_draw_segment(canvas, x, bottom, x, bottom + BAR_TICK, pen);

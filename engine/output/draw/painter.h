@@ -76,12 +76,8 @@ strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_it
 /** Draws a scale of colours with its ticks below and its name above. */
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale);
 #define STRUT_SCALE_HEIGHT 34.0
-/**
- * A mark at a frame's edge for what lies beyond the side towards `out`: a triangle STRUT_BEYOND_SIZE high, its tip so
- * far outside.
- */
-void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2],
-                       double outside);
+/** A mark for what lies beyond a frame's edge: a triangle STRUT_BEYOND_SIZE high, its tip at x, y, towards `out`. */
+void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2]);
 #define STRUT_BEYOND_SIZE 5.0
 
 /* ---- charts (axes.c, chart.c) ---- */
@@ -94,14 +90,9 @@ bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
  */
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count);
 size_t strut_panel_legend_room(const strut_panel *panel);
-/** Height of a chart's title, centred above its frame, and the space below; draws it if `draw`. */
-double strut_chart_title(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool draw);
-/**
- * Draws a chart with settled axes in a box, below so high a title [pt], with its legend or without. False: out of
- * memory.
- */
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, double title, const strut_panel *panel,
-                      bool legend, strut_arena *arena);
+/** Draws a chart with settled axes in a box, with its legend or without. False: out of memory. */
+bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
+                      strut_arena *arena);
 /** Limits of a map's cells along x or y. */
 void strut_map_limits(const double *at, size_t count, double limits[2]);
 /**
@@ -112,25 +103,30 @@ size_t strut_thin(double (*points)[2], size_t count, double grain);
 
 /* ---- views, panels with structures (structure.c, view.c) ---- */
 
-/** A shape with its ground's forces and displacements, without its names. */
-void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
-/** Names beside nodes and, with `members`, beside members; none where there are more than 60 nodes. */
-void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_model *model,
-                      const double *positions, bool members);
-/** The lines and bodies of all grounds across the window, where those that are shaken are at `time` [s]; NAN: as drawn. */
-void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_model *model,
-                       double time);
+/** A window onto the plane: the same scale in x and y, centred in its box. */
+typedef struct strut_window {
+  strut_box box;    /* on the page [pt] */
+  double scale;     /* [pt/m] */
+  double left, top; /* the plane's x and y at the box's upper left corner [m] */
+} strut_window;
+/** The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows. */
+strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin);
+/** Maps a point of the plane [m] to the page [pt]. */
+void strut_window_point(const strut_window *window, const double position[2], double point[2]);
 /**
- * Lays (count) panels with views out from the upper left corner of `box` on, as many to a row as make the structures
- * largest, with the figure's foot below if `foot`; draws them if `draw`. Returns the height [pt].
+ * Members, nodes, supports, cells (filled), hinges (an arc from arm to arm), stops that act (a bar across
+ * their member), masses on members (filled circles) and forces of the ground. Widths adapt to how many there are.
  */
-double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure *figure,
-                        const strut_panel *panels, size_t count, bool foot, bool draw);
+void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
+/** Names of its nodes and, where the style says so, its members; none where there are more than 60 nodes. */
+void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
+/** The lines and bodies of all grounds across the window, of a shape that is moving where they are at its time. */
+void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
 /** Draws shapes, trails and marks of a view into a box: that of all its window, margins included. */
 strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view);
-/**
- * The figure's scale bar (of a window, if there is one), keys and scale of colours; draws them if `draw`.
- * Returns their height [pt].
- */
-double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *figure,
-                       const strut_window *window, bool draw);
+/** More than its margin takes below a view, for the forces of the ground [pt]. */
+double strut_view_arrows(const strut_panel *view);
+#define STRUT_ARROW 20.0 /* the largest of them [pt] */
+/** A scale bar with its length, such as "20 mm", at the lower left corner of a view so wide [pt], at its scale [pt/m]. */
+void strut_draw_yardstick(strut_canvas *canvas, double left, double bottom, double width,
+                          double scale);

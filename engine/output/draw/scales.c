@@ -44,14 +44,6 @@ strut_colour strut_palette_at(strut_colours colours, double value, double low, d
                  colours == STRUT_COLOURS_SEQUENTIAL ? part : 0.5 + 0.5 * value / limit);
 }
 
-strut_colour strut_palette_signed(double value) {
-  return strut_palette_at(STRUT_COLOURS_SIGNED, value, -1, 1);
-}
-
-strut_colour strut_palette_sequence(double value) {
-  return strut_palette_at(STRUT_COLOURS_SEQUENTIAL, value, 0, 1);
-}
-
 strut_colour strut_palette_thing(size_t i) { return from(THINGS[i % STRUT_PALETTE_THINGS]); }
 
 strut_colour strut_grey(double brightness) {
@@ -75,8 +67,18 @@ strut_pen strut_series_pen(size_t look) {
   return pen;
 }
 
-strut_pen strut_displacement_pen(void) {
-  return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8};
+bool strut_member_is_driven(const strut_scene *scene, size_t member) {
+  for (size_t i = 0; i < scene->actuator_count; i++)
+    if (scene->actuators[i].member == (int32_t)member) return true;
+  return false;
+}
+
+strut_pen strut_kind_pen(strut_member_kind kind, bool driven) {
+  static const double widths[] = {[STRUT_BAR] = 2.4, [STRUT_SPRING] = 1.3, [STRUT_CABLE] = 0.8};
+  size_t thing = driven ? 2 : kind == STRUT_SPRING ? 0 : 1;
+  return (strut_pen){
+      .colour = kind == STRUT_BAR && !driven ? strut_grey(0.15) : strut_palette_thing(thing),
+      .width = kind > STRUT_CABLE ? 2.0 : widths[kind]};
 }
 
 /* ---- texts ---- */
@@ -147,8 +149,8 @@ void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
 
 /* ---- ranges that few values do not flatten ---- */
 
-/* Values that take more than this part of a scale are left out of it, if they are few: of all values. */
-static const double MOST_OF_RANGE = 0.75, FEW = 0.05;
+/* Values that take more than this part of a scale are left out of it, if they are few. */
+static const double MOST_OF_RANGE = 0.75;
 
 /* Sorts the finite values to the front. Returns how many there are. */
 static size_t sort_finite(double *values, size_t count) {
@@ -159,45 +161,30 @@ static size_t sort_finite(double *values, size_t count) {
   return kept;
 }
 
-/*
- * Narrows a range to the shortest one of all values but that share of them, if it is a small part of the whole. Of the
- * rest, those stay that are within half of it beside it. That of magnitudes begins at 0 and holds `other`.
- */
-static void leave_out(double *values, size_t count, double share, bool magnitudes, double other,
-                      double *low, double *high, strut_beyond *beyond) {
+strut_beyond strut_leave_out(double *values, size_t count, double share, double range[2]) {
+  const double held[2] = {range[0], range[1]};
   size_t kept = sort_finite(values, count), most = (size_t)(share * (double)kept);
   double least = HUGE_VAL, core[2] = {0};
-  *beyond = (strut_beyond){0};
-  if (!kept) return;
-  for (size_t below = 0; below <= (magnitudes ? 0 : most); below++) { /* the others above */
-    double from = magnitudes ? 0.0 : values[below];
-    double to = fmax(values[kept - 1 - (most - below)], other);
+  strut_beyond beyond = {0};
+  if (!kept) return beyond;
+  for (size_t below = 0; below <= most; below++) { /* the others above */
+    double from = fmin(held[0], values[below]);
+    double to = fmax(held[1], values[kept - 1 - (most - below)]);
     if (to - from < least) least = to - from, core[0] = from, core[1] = to;
   }
-  double largest = fmax(values[kept - 1], other);
-  double whole = largest - (magnitudes ? 0.0 : values[0]);
-  if (magnitudes) *high = largest;
-  if (!(least < (1 - MOST_OF_RANGE) * whole) || !(least > 0)) return;
-  *low = core[0], *high = core[1];
+  range[0] = fmin(held[0], values[0]), range[1] = fmax(held[1], values[kept - 1]);
+  if (!(least > 0 && least < (1 - MOST_OF_RANGE) * (range[1] - range[0]))) return beyond;
+  range[0] = core[0], range[1] = core[1];
   for (size_t i = 0; i < kept; i++) {
-    double value = values[i], margin = 0.5 * least;
-    bool below = core[0] - value > margin, above = value - core[1] > margin;
-    beyond->below += below, beyond->above += above;
-    if (!below && !above) *low = fmin(*low, value), *high = fmax(*high, value);
-    if ((below || above) && fabs(value) > fabs(beyond->farthest)) beyond->farthest = value;
+    double value = values[i], farther = fmax(core[0] - value, value - core[1]);
+    if (farther <= 0.5 * least) {
+      range[0] = fmin(range[0], value), range[1] = fmax(range[1], value);
+      continue;
+    }
+    ++*(value < core[0] ? &beyond.below : &beyond.above);
+    if (fabs(value) > fabs(beyond.farthest)) beyond.farthest = value;
   }
-}
-
-double strut_limit_without_outliers(double *magnitudes, size_t count, double other, double share,
-                                    strut_beyond *beyond) {
-  double low = 0.0, high = other;
-  leave_out(magnitudes, count, share, true, other, &low, &high, beyond);
-  return high;
-}
-
-void strut_range_without_outliers(double *values, size_t count, double *low, double *high,
-                                  strut_beyond *beyond) {
-  leave_out(values, count, FEW, false, -HUGE_VAL, low, high, beyond);
+  return beyond;
 }
 
 const char *strut_beyond_text(const strut_beyond *beyond, const char *what, const char *unit,

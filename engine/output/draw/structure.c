@@ -11,7 +11,7 @@
 #include "engine/scene/profile.h"
 #include "engine/scene/wrap.h"
 
-static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* widths [pt] */
+static const double CASING = 0.7;       /* beside shaded members [pt] */
 static const double FULL_LENGTH = 28.0; /* members this long on the page have full width [pt] */
 static const double THINNEST = 0.06, FRINGE_DASH = 2.2; /* [1], [pt] */
 static const double SMALLEST = 0.3;                     /* more that is thinner is not drawn */
@@ -154,9 +154,10 @@ static strut_colour colour_of(const drawing *d, size_t j, bool slack) {
   if (slack) return strut_grey(0.55);
   if (is_shaded(style)) {
     double part = style->limit > 0 ? style->values[j] / style->limit : 0;
-    return strut_palette_signed(isfinite(part) ? round(SHADES * part) / SHADES : 0);
+    return strut_palette_at(STRUT_COLOURS_SIGNED,
+                            isfinite(part) ? round(SHADES * part) / SHADES : 0, -1, 1);
   }
-  return kind == STRUT_BAR ? strut_grey(0.15) : strut_palette_thing(kind == STRUT_SPRING ? 0 : 1);
+  return strut_kind_pen(kind, strut_member_is_driven(d->model->scene, j)).colour;
 }
 
 static strut_pen pen_of(const drawing *d, size_t j, double width, bool slack) {
@@ -180,8 +181,8 @@ static bool is_same_pen(const strut_pen *one, const strut_pen *two) {
  */
 static void draw_kind(const drawing *d, strut_member_kind kind, bool slack) {
   enum { BATCH = 256 };
-  double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
-  width = width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
+  double width =
+      strut_kind_pen(kind, false).width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
   const strut_pen casing = {.colour = strut_grey(0.1), .width = width + CASING * d->thin};
   double ends[2 * BATCH][2];
   strut_pen last = casing;
@@ -392,25 +393,6 @@ static void draw_masses(const drawing *d) {
   }
 }
 
-void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
-                          const strut_model *model, const double *positions,
-                          const strut_structure_style *style) {
-  drawing d = {canvas, window, model, positions, style, 1.0};
-  d.thin = find_thinning(&d);
-  if (!style->no_supports) draw_supports(&d);
-  draw_cells(&d);
-  draw_collisions(&d);
-  draw_kind(&d, STRUT_BAR, false); /* thin ones above thick ones, to be seen along a bar */
-  draw_kind(&d, STRUT_SPRING, false);
-  draw_kind(&d, STRUT_CABLE, true);
-  draw_kind(&d, STRUT_CABLE, false);
-  if (d.thin >= SMALLEST) {
-    draw_elements(&d);
-    draw_masses(&d);
-  }
-  if (style->node_names) strut_draw_names(canvas, window, model, positions, style->member_names);
-}
-
 /* ---- names ---- */
 
 static const double NODE_GAP = 3.6, MEMBER_GAP = 1.5, NAME_SIZE = 7.5, NEAR_MIDDLE = 6.0; /* [pt] */
@@ -435,19 +417,18 @@ static double find_outwards(const double at[2], const double middle[2]) {
   return hypot(x, y) > NEAR_MIDDLE ? atan2(y, x) : 0.25 * STRUT_PI;
 }
 
-void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_model *model,
-                      const double *positions, bool members) {
+void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
   enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
-  const drawing d = {canvas, window, model, positions, NULL, 1.0};
-  const strut_scene *scene = model->scene;
+  const drawing d = {canvas, window, shape->model, shape->q, &shape->style, 1.0};
+  const strut_scene *scene = shape->model->scene;
   double middle[2], at[2], ends[2][2];
   if (scene->node_count > MOST_NAMED) return;
   find_middle(&d, middle);
   for (size_t i = 0; i < scene->node_count; i++) {
-    strut_window_point(window, positions + 2 * i, at);
+    strut_window_point(window, shape->q + 2 * i, at);
     draw_name(&d, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
   }
-  for (size_t j = 0; j < scene->member_count && members; j++) {
+  for (size_t j = 0; j < scene->member_count && shape->style.member_names; j++) {
     find_longest(&d, j, ends); /* the name is drawn at its middle */
     for (int c = 0; c < 2; c++) at[c] = 0.5 * (ends[0][c] + ends[1][c]);
     draw_name(&d, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
@@ -459,9 +440,9 @@ static void draw_forces(strut_canvas *canvas, const strut_window *window,
                         const strut_shape *shape) {
   const strut_contact_table *contacts = &shape->model->contacts;
   const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
-  for (int32_t i = 0; i < contacts->count && shape->force_limit > 0; i++) {
-    double at[2], normal = shape->forces[i][0] / shape->force_limit * shape->arrow;
-    double along = shape->forces[i][1] / shape->force_limit * shape->arrow;
+  for (int32_t i = 0; shape->forces && i < contacts->count && shape->force_limit > 0; i++) {
+    double at[2], normal = shape->forces[i][0] / shape->force_limit * STRUT_ARROW;
+    double along = shape->forces[i][1] / shape->force_limit * STRUT_ARROW;
     const strut_contact_pose pose = strut_contact_pose_at(contacts, i, shape->q, NULL, -1);
     const double *n = pose.axes.normal, *t = pose.axes.tangent;
     strut_window_point(window, shape->q + contacts->at[i], at);
@@ -473,8 +454,20 @@ static void draw_forces(strut_canvas *canvas, const strut_window *window,
 }
 
 void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
-  strut_draw_structure(canvas, window, shape->model, shape->q, &shape->style);
-  if (shape->forces) draw_forces(canvas, window, shape);
+  drawing d = {canvas, window, shape->model, shape->q, &shape->style, 1.0};
+  d.thin = find_thinning(&d);
+  if (!shape->style.no_supports) draw_supports(&d);
+  draw_cells(&d);
+  draw_collisions(&d);
+  draw_kind(&d, STRUT_BAR, false); /* thin ones above thick ones, to be seen along a bar */
+  draw_kind(&d, STRUT_SPRING, false);
+  draw_kind(&d, STRUT_CABLE, true);
+  draw_kind(&d, STRUT_CABLE, false);
+  if (d.thin >= SMALLEST) {
+    draw_elements(&d);
+    draw_masses(&d);
+  }
+  draw_forces(canvas, window, shape);
 }
 
 /* ---- grounds ---- */
@@ -529,15 +522,14 @@ static void draw_one(strut_canvas *canvas, const strut_window *window, const str
   strut_arena_free(&arena);
 }
 
-void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_model *model,
-                       double time) {
-  const strut_scene *scene = model->scene;
+void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
+  const strut_scene *scene = shape->model->scene;
   double place[2];
   strut_canvas_clip(canvas, window->box);
   if (scene->ground.present) draw_one(canvas, window, &scene->ground, NULL);
   for (size_t g = 0; g < scene->ground_count; g++) {
-    if (!isnan(time)) strut_ground_place(scene, g, time, place);
-    draw_one(canvas, window, &scene->grounds[g], isnan(time) ? NULL : place);
+    if (shape->moving) strut_ground_place(scene, g, shape->style.time, place);
+    draw_one(canvas, window, &scene->grounds[g], shape->moving ? place : NULL);
   }
   strut_canvas_unclip(canvas);
 }

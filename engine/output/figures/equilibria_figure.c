@@ -6,44 +6,30 @@
 #include "engine/output/draw/figure.h"
 #include "engine/output/figures/statics_figures.h"
 
-enum {
-  MOST_CARDS = 12,
-  MOST_SMALL = 6,
-  MOST_PASSES = MOST_CARDS * MOST_CARDS / 2,
-  ARC = 41,
-  FEW = 4
-};
+enum { MOST_CARDS = 12, ARC = 41, FEW = 4 };
 
-static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
-static const double ARROW = 20, MARGIN = 17, LEAST_MARGIN = 6, LADDER = 150; /* [pt] */
-static const double ROUNDING = 1e-12;     /* of the largest energy: written as zero */
-static const double LEVEL = 0.3;          /* half the width of a level, in places */
-static const double OUTLYING = 1.0 / 3.0; /* so many of the barriers may lie beyond the axis */
+static const double COLLAPSED = 1.0 / 3.0;     /* most of the cards with forces beyond the scale */
+static const double MARGIN = 17, LADDER = 150; /* [pt] */
+static const double ROUNDING = 1e-12;          /* of the largest energy: written as zero */
+static const double LEVEL = 0.3;               /* half the width of a level, in places */
+static const double OUTLYING = 1.0 / 3.0;      /* so many of the barriers may lie beyond the axis */
 
 typedef struct picture {
   const strut_model *model;
   const strut_equilibria *all;
-  size_t *standing, standing_count; /* those that stand, and floppy ones, by energy */
-  size_t floppy_count;              /* of these */
-  size_t *aside, aside_count;       /* further stable ones, by energy */
-  size_t cards, small;              /* drawn of both */
+  size_t *list, count, cards; /* by energy: those that stand, and floppy ones; drawn */
+  size_t floppy, aside;       /* of these; other stable ones, */
+  bool none;                  /* which are drawn if none stands */
   double size[2], force_limit, contact_limit, largest_energy;
   strut_beyond beyond; /* force_limit */
   strut_figure figure;
 } picture;
 
 static const strut_equilibrium *card_of(const picture *self, size_t place) {
-  return &self->all->list[self->standing[place]];
+  return &self->all->list[self->list[place]];
 }
 
 /* ---- the ladder ---- */
-
-/* A barrier that is drawn between the cards at two places. */
-typedef struct pass {
-  size_t place[2];
-  double level[2], top; /* above the lowest card [J] */
-  const char *text;     /* its heights from either side */
-} pass;
 
 /* From card to card [J]: the direct pass where it is known, else the lowest path; NAN: not known. */
 static double find_height(const picture *self, size_t from, size_t to) {
@@ -51,50 +37,33 @@ static double find_height(const picture *self, size_t from, size_t to) {
   for (size_t i = 0; i < self->all->barrier_count; i++) {
     const strut_barrier *b = &self->all->barriers[i];
     double known = isfinite(b->direct) ? b->direct : b->height;
-    if ((size_t)b->from == self->standing[from] && (size_t)b->to == self->standing[to] &&
-        isfinite(known))
+    if (&self->all->list[b->from] == card_of(self, from) &&
+        &self->all->list[b->to] == card_of(self, to) && isfinite(known))
       height = known;
   }
   return height;
 }
 
-/* Among many cards only barriers between neighbours remain readable. Returns how many there are. */
-static size_t find_passes(picture *self, const double *level, pass *passes) {
-  size_t count = 0;
-  for (size_t left = 0; left < self->cards; left++)
-    for (size_t right = left + 1; right < self->cards; right++) {
-      double up = find_height(self, left, right), down = find_height(self, right, left);
-      bool one = isfinite(up), two = isfinite(down);
-      if ((!one && !two) || (right > left + 1 && self->cards > FEW)) continue;
-      passes[count++] =
-          (pass){.place = {left, right},
-                 .level = {level[left], level[right]},
-                 .top = one ? level[left] + up : level[right] + down,
-                 .text = strut_figure_text(
-                     &self->figure, "%s%s%s%s", one ? strut_quantity_of(up, 3, "J").text : "",
-                     one ? two ? " \xe2\x86\x92\n" : " \xe2\x86\x92" : "",
-                     two ? "\xe2\x86\x90 " : "", two ? strut_quantity_of(down, 3, "J").text : "")};
-    }
-  return count;
+/* The top of the barrier between a card and the next [J], NAN: none; and its heights from either side. */
+static double find_pass(picture *self, size_t k, const double *level, const char **text) {
+  double up = find_height(self, k, k + 1), down = find_height(self, k + 1, k);
+  bool one = isfinite(up), two = isfinite(down);
+  *text = strut_figure_text(
+      &self->figure, "%s%s%s%s%s", one ? strut_quantity_of(up, 3, "J").text : "",
+      one ? " \xe2\x86\x92" : "", one && two ? "\n" : "", two ? "\xe2\x86\x90 " : "",
+      two ? strut_quantity_of(down, 3, "J").text : "");
+  return one ? level[k] + up : level[k + 1] + down;
 }
 
-/* A smooth curve from one level over the barrier to the other, which leaves the frame where it is higher. */
-static void add_arc(picture *self, strut_series *arcs, const pass *p, double most) {
-  double width = (double)(p->place[1] - p->place[0]) - 2 * LEVEL;
-  double top = p->top <= most ? p->top : 1.3 * most;
+/* Its curve from level to level, smooth, which leaves the frame where it is higher than that. */
+static void add_arc(picture *self, strut_series *arcs, size_t k, const double *level, double top) {
   for (int i = 0; i < ARC; i++) {
-    double t = (double)i / (ARC - 1), low = p->level[t >= 0.5];
+    double t = (double)i / (ARC - 1), low = level[k + (t >= 0.5)];
     double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
-    strut_add_point(&self->figure, arcs, (double)p->place[0] + LEVEL + t * width,
+    strut_add_point(&self->figure, arcs, (double)k + LEVEL + t * (1 - 2 * LEVEL),
                     low + rise * (top - low));
   }
-  strut_add_gap(&self->figure, arcs);
-}
-
-static void add_level(picture *self, strut_series *levels, double x, double energy) {
-  strut_add_point(&self->figure, levels, x - LEVEL, energy);
-  strut_add_point(&self->figure, levels, x + LEVEL, energy);
-  strut_add_gap(&self->figure, levels);
+  strut_add_point(&self->figure, arcs, (double)NAN, (double)NAN);
 }
 
 static void add_name(picture *self, strut_panel *panel, double x, double y, const char *text,
@@ -108,52 +77,43 @@ static void add_name(picture *self, strut_panel *panel, double x, double y, cons
   mark->priority = level ? 2 : 1;
 }
 
-/* The energy axis, which leaves out single barriers far above all else. */
-static strut_axis find_axis(const double *level, size_t cards, const pass *passes, size_t count,
-                            strut_beyond *beyond) {
-  strut_axis y = {.name = "energy above the lowest", .unit = "J"};
-  double tops[MOST_PASSES];
-  for (size_t k = 0; k < cards; k++) strut_axis_include(&y, level[k]);
-  for (size_t i = 0; i < count; i++) tops[i] = passes[i].top;
-  strut_axis_include(&y, strut_limit_without_outliers(tops, count, y.high, OUTLYING, beyond));
-  strut_axis_settle(&y, 0.2);
-  return y;
-}
-
-/* Adds a panel with the cards as levels and the barriers between them, if there are any. */
+/* Adds a panel with the cards as levels and barriers between neighbours, of which few far above all leave the axis. */
 static void add_ladder(picture *self) {
-  static const strut_pen pens[] = {
-      {.colour = {0.35, 0.35, 0.35, 1}, .width = 0.9}, /* of neighbours, of others, of levels */
-      {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
-      {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
   static const char *const no_names[] = {NULL};
-  double level[MOST_CARDS], wider = self->cards > FEW ? 0.8 : 0.5; /* names are wider than levels */
-  pass passes[MOST_PASSES];
+  const size_t cards = self->cards;
+  const double wider = cards > FEW ? 0.8 : 0.5; /* names are wider than levels */
+  double level[MOST_CARDS], top[MOST_CARDS] = {0}, sorted[MOST_CARDS], range[2] = {0, 0};
+  const char *heights[MOST_CARDS];
   char text[STRUT_BEYOND_TEXT];
-  strut_beyond beyond = {0};
-  for (size_t k = 0; k < self->cards; k++)
-    level[k] = card_of(self, k)->energy - card_of(self, 0)->energy;
-  size_t count = find_passes(self, level, passes);
-  if (!count) return;
+  size_t known = 0;
+  for (size_t k = 0; k < cards; k++) level[k] = card_of(self, k)->energy - card_of(self, 0)->energy;
+  for (size_t k = 0; k + 1 < cards; k++)
+    if (isfinite(top[k] = find_pass(self, k, level, &heights[k]))) sorted[known++] = top[k];
+  if (!known) return;
+  range[1] = level[cards - 1];
+  const strut_beyond beyond = strut_leave_out(sorted, known, OUTLYING, range);
   strut_panel *panel = strut_add_panel(&self->figure);
   panel->height = LADDER;
   panel->whole = true;
-  panel->x =
-      (strut_axis){.low = -wider, .high = (double)self->cards - 1 + wider, .names = no_names};
-  panel->y = find_axis(level, self->cards, passes, count, &beyond);
-  for (int i = 0; i < 3; i++) {
-    strut_series *series = strut_add_series(&self->figure, panel, NULL);
-    series->pen = pens[i];
-    for (size_t k = 0; k < self->cards && i == 2; k++) {
-      add_level(self, series, (double)k, level[k]);
-      add_name(self, panel, (double)k, level[k], card_of(self, k)->name, true);
-    }
-    for (size_t k = 0; k < count && i < 2; k++) {
-      const pass *p = &passes[k];
-      if ((p->place[1] > p->place[0] + 1) != (i == 1)) continue;
-      add_arc(self, series, p, panel->y.high);
-      if (i == 0) add_name(self, panel, (double)p->place[0] + 0.5, p->top, p->text, false);
-    }
+  panel->x = (strut_axis){.low = -wider, .high = (double)cards - 1 + wider, .names = no_names};
+  panel->y = (strut_axis){"energy above the lowest", "J", .low = range[0], .high = range[1]};
+  strut_axis_settle(&panel->y, 0.2);
+  strut_series *series = strut_add_series(&self->figure, panel, NULL);
+  series->pen = (strut_pen){.colour = strut_grey(0.35), .width = 0.9};
+  for (size_t k = 0; k + 1 < cards; k++) {
+    if (!isfinite(top[k])) continue;
+    double most = panel->y.high;
+    add_arc(self, series, k, level, top[k] <= most ? top[k] : 1.3 * most);
+    add_name(self, panel, (double)k + 0.5, top[k], heights[k], false);
+  }
+  series = strut_add_series(&self->figure, panel, NULL);
+  series->pen = (strut_pen){.colour = strut_palette_thing(0), .width = 2, .butt = true};
+  for (size_t k = 0; k < cards; k++) {
+    double x = (double)k;
+    strut_add_point(&self->figure, series, x - LEVEL, level[k]);
+    strut_add_point(&self->figure, series, x + LEVEL, level[k]);
+    strut_add_point(&self->figure, series, (double)NAN, (double)NAN);
+    add_name(self, panel, x, level[k], card_of(self, k)->name, true);
   }
   panel->remark = strut_figure_text(
       &self->figure, "%s", strut_beyond_text(&beyond, "barrier", "J", (strut_file_unit){0}, text));
@@ -169,123 +129,100 @@ static const double *drawn_shape(const picture *self, size_t i) {
 }
 
 /* Adds an index to those sorted by energy; equal ones keep the list's order. */
-static void add_by_energy(const strut_equilibria *all, size_t *index, size_t *count, size_t added) {
-  size_t k = (*count)++;
-  for (; k > 0 && all->list[index[k - 1]].energy > all->list[added].energy; k--)
-    index[k] = index[k - 1];
-  index[k] = added;
+static void add_by_energy(picture *self, size_t added) {
+  const strut_equilibrium *all = self->all->list;
+  size_t k = self->count++;
+  for (; k > 0 && all[self->list[k - 1]].energy > all[added].energy; k--)
+    self->list[k] = self->list[k - 1];
+  self->list[k] = added;
 }
 
-static bool choose_equilibria(picture *self) {
-  size_t count = self->all->count;
-  self->standing = strut_arena_allocate(&self->figure.arena, count, sizeof *self->standing);
-  self->aside = strut_arena_allocate(&self->figure.arena, count, sizeof *self->aside);
-  if (!self->standing || !self->aside) return false;
-  for (size_t i = 0; i < count; i++) {
-    const strut_equilibrium *equilibrium = &self->all->list[i];
-    bool floppy = equilibrium->outcome == STRUT_OUTCOME_FLOPPY;
-    self->largest_energy = fmax(self->largest_energy, fabs(equilibrium->energy));
-    if (equilibrium->point.label != STRUT_STABLE && equilibrium->point.label != STRUT_FLOPPY)
-      continue;
-    self->floppy_count += floppy;
-    if (equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy)
-      add_by_energy(self->all, self->standing, &self->standing_count, i);
-    else
-      add_by_energy(self->all, self->aside, &self->aside_count, i);
+/* Those that stand; where none does, all that are stable. */
+static void choose_equilibria(picture *self) {
+  self->list = strut_arena_allocate(&self->figure.arena, self->all->count, sizeof *self->list);
+  self->figure.failed = !self->list;
+  for (int all = 0; all < 2 && self->list && !self->count; all++) {
+    self->aside = 0;
+    self->none = all;
+    for (size_t i = 0; i < self->all->count; i++) {
+      const strut_equilibrium *equilibrium = &self->all->list[i];
+      bool floppy = equilibrium->outcome == STRUT_OUTCOME_FLOPPY;
+      self->largest_energy = fmax(self->largest_energy, fabs(equilibrium->energy));
+      if (equilibrium->point.label != STRUT_STABLE && equilibrium->point.label != STRUT_FLOPPY)
+        continue;
+      bool stands = equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy;
+      self->floppy += floppy, self->aside += !stands;
+      if (stands || all) add_by_energy(self, i);
+    }
   }
-  self->cards = self->standing_count < MOST_CARDS ? self->standing_count : MOST_CARDS;
-  self->small = self->aside_count < MOST_SMALL ? self->aside_count : MOST_SMALL;
-  return true;
+  self->cards = self->count < MOST_CARDS ? self->count : MOST_CARDS;
 }
 
 /* The scales that all cards share: of forces but for collapsed states with far larger ones. */
 static void find_scales(picture *self) {
   double most[MOST_CARDS] = {0};
-  const size_t *shown = self->cards ? self->standing : self->aside;
-  for (size_t k = 0; k < (self->cards ? self->cards : self->small); k++) {
-    const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, shown[k]));
-    for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
-  }
   for (size_t k = 0; k < self->cards; k++) {
     const strut_equilibrium *card = card_of(self, k);
+    const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, self->list[k]));
+    for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
     most[k] = strut_largest(card->member_force, self->model->scene->member_count);
     self->contact_limit =
         fmax(self->contact_limit, strut_largest(card->normal, (size_t)card->contact_count));
   }
-  self->force_limit =
-      strut_limit_without_outliers(most, self->cards, 0.0, COLLAPSED, &self->beyond);
+  double range[2] = {0, 0};
+  self->beyond = strut_leave_out(most, self->cards, COLLAPSED, range);
+  self->force_limit = range[1];
   self->beyond.below = self->beyond.above; /* of either sign */
-}
-
-/* Adds the panel of an equilibrium, without its shape. */
-static strut_panel *add_panel(picture *self, size_t i, double margin) {
-  const strut_equilibrium *equilibrium = &self->all->list[i];
-  const strut_ground *ground = &self->model->scene->ground;
-  bool zero = !(fabs(equilibrium->energy) > ROUNDING * self->largest_energy);
-  strut_panel *panel = strut_add_panel(&self->figure);
-  panel->bounds = strut_bounds_of(self->model, drawn_shape(self, i));
-  if (ground->present && ground->slope == 0)
-    panel->bounds.low[1] = fmin(panel->bounds.low[1], ground->height);
-  strut_bounds_share(&panel->bounds, self->size);
-  panel->margin = margin;
-  panel->note = strut_figure_text(&self->figure, "%s, %s",
-                                  strut_quantity_of(zero ? 0 : equilibrium->energy, 6, "J").text,
-                                  equilibrium->verdict);
-  return panel;
 }
 
 /* An equilibrium that stands, with the forces in it and of the ground. */
 static void add_card(picture *self, size_t i) {
   const strut_equilibrium *card = &self->all->list[i];
   const strut_contact_table *contacts = &self->model->contacts;
-  double *force = strut_figure_numbers(&self->figure, 2 * (size_t)contacts->count);
+  const strut_ground *ground = &self->model->scene->ground;
+  bool zero = !(fabs(card->energy) > ROUNDING * self->largest_energy);
+  double *force = strut_figure_numbers(&self->figure, NULL, 2 * (size_t)contacts->count);
   for (int32_t k = 0; force && k < card->contact_count && card->normal; k++)
     for (int32_t c = 0; c < contacts->count; c++)
       if (contacts->entry[c].node == card->contacts[k]) force[2 * c] = card->normal[k];
-  strut_panel *panel = add_panel(self, i, MARGIN);
+  strut_panel *panel = strut_add_panel(&self->figure);
   panel->title = card->name;
+  panel->note =
+      strut_figure_text(&self->figure, "%s, %s",
+                        strut_quantity_of(zero ? 0 : card->energy, 6, "J").text, card->verdict);
+  panel->bounds = strut_bounds_of(self->model, drawn_shape(self, i));
+  if (ground->present && ground->slope == 0)
+    panel->bounds.low[1] = fmin(panel->bounds.low[1], ground->height);
+  strut_bounds_share(&panel->bounds, self->size);
+  panel->margin = MARGIN;
   strut_shape *shape = strut_add_forces(&self->figure, panel, self->model, drawn_shape(self, i),
                                         card->member_force, self->force_limit);
   shape->names = true;
   shape->forces = (const double(*)[2])force;
   shape->force_limit = self->contact_limit;
-  shape->arrow = ARROW;
-}
-
-/* One that is stable but does not stand, small and grey. */
-static void add_small(picture *self, size_t i) {
-  strut_panel *panel = add_panel(self, i, LEAST_MARGIN);
-  strut_shape *shape =
-      strut_add_ghost(&self->figure, panel, self->model, drawn_shape(self, i), 0.45);
-  shape->style.thinness = 0.4;
-  shape->style.no_supports = false;
-  shape->ground = panel->small = true;
 }
 
 static const char *describe_all(picture *self) {
-  size_t stable = self->standing_count - self->floppy_count, floppy = self->floppy_count;
-  bool few = self->small < self->aside_count;
-  const char *aside = "";
-  if (self->small)
-    aside = strut_figure_text(
-        &self->figure,
-        "; small and grey: stable on static supports, but not at rest on the ground%s%.0zu%s",
-        few ? " (the lowest of " : "", few ? self->aside_count : 0, few ? ")" : "");
-  return strut_figure_text(
-      &self->figure, "%zu stable equilibri%s%s%s%.0zu%s%s%s", stable, stable == 1 ? "um" : "a",
-      self->model->scene->ground.present ? " on the ground" : "", floppy ? ", " : "", floppy,
-      floppy ? " floppy" : "", self->cards < self->standing_count ? ", the lowest are drawn" : "",
-      aside);
+  strut_figure *figure = &self->figure;
+  size_t stable = self->count - self->floppy, few = self->cards < self->count;
+  const char *text =
+      strut_figure_text(figure, "%zu stable equilibri%s%s", stable, stable == 1 ? "um" : "a",
+                        self->model->scene->ground.present && !self->none ? " on the ground" : "");
+  if (self->floppy) text = strut_figure_text(figure, "%s, %zu floppy", text, self->floppy);
+  if (few) text = strut_figure_text(figure, "%s, the lowest are drawn", text);
+  if (!self->aside || self->none)
+    return self->none ? strut_figure_text(figure, "%s, none at rest on the ground", text) : text;
+  return strut_figure_text(figure, "%s; %zu more are stable, but not at rest on the ground", text,
+                           self->aside);
 }
 
 strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                      const strut_equilibria *equilibria, strut_error *error) {
   picture p = {.model = model, .all = equilibria, .figure.title = model->scene->name};
-  p.figure.failed = !choose_equilibria(&p);
+  choose_equilibria(&p);
   find_scales(&p);
-  for (size_t k = 0; k < p.cards; k++) add_card(&p, p.standing[k]);
+  for (size_t k = 0; k < p.cards; k++) add_card(&p, p.list[k]);
   add_ladder(&p);
-  for (size_t k = 0; k < p.small; k++) add_small(&p, p.aside[k]);
   p.figure.note = describe_all(&p);
   p.figure.yardstick = p.cards > 0;
   p.figure.scale = strut_force_scale(p.force_limit, &p.beyond);

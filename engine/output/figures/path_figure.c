@@ -11,7 +11,7 @@
 
 enum { MOST_STOPS = 10 };
 
-static const double MARGIN = 15.0, GAP = 4.0;  /* [pt]; between a node and the arrow of its load */
+static const double MARGIN = 15.0;             /* [pt] */
 static const double CURVE = 0.72;              /* height over width of the curve's panel */
 static const double ARROW = 0.13;              /* a load's, of the structure's size */
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
@@ -66,19 +66,28 @@ static bool is_loaded(const path_picture *picture, int32_t coordinate) {
   return false;
 }
 
-/* The displaced coordinate; else that of a loaded node that moves farthest; of a free one where loads act on none. */
+/*
+ * The displaced coordinate; else that of a loaded node that moves farthest; of a free one where loads act on none. Small
+ * motion is enlarged by a round factor, but beside a ground, where contact would look wrong.
+ */
 static void choose_coordinate(path_picture *picture) {
-  double most = 0.0;
+  const strut_model *model = picture->model;
+  double most = 0.0, all = 0.0;
   int best = -1;
   picture->coordinate = picture->path->coordinate;
-  for (int32_t i = 0; i < 2 * picture->model->node_count && picture->path->coordinate < 0; i++) {
-    int rank = is_loaded(picture, i) ? 2 : picture->model->fixed[i] ? 0 : 1;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    int rank = is_loaded(picture, i) ? 2 : model->fixed[i] ? 0 : 1;
     double here = fabs(largest_motion(picture->path, i));
+    all = fmax(all, here);
     if (rank < best || (rank == best && here <= most * (1 + 1e-9))) continue;
     most = here, best = rank;
-    picture->coordinate = i;
+    if (picture->path->coordinate < 0) picture->coordinate = i;
   }
   picture->sign = largest_motion(picture->path, picture->coordinate) < 0 ? -1.0 : 1.0;
+  bool small = all > NO_MOTION * model->size && all < SEEN * model->size;
+  picture->larger = small && !model->scene->ground.present
+                        ? fmax(1.0, strut_round_below(LARGE * model->size / all))
+                        : 1.0;
 }
 
 /* Where a state is in the chart: the displacement [m]; a load or reaction [N], or the value. */
@@ -218,7 +227,8 @@ static void name_axes(path_picture *picture, strut_panel *panel) {
 }
 
 static strut_colour colour_of(const path_picture *picture, size_t stop) {
-  return strut_palette_sequence((double)stop / (double)(picture->stop_count - 1));
+  return strut_palette_at(STRUT_COLOURS_SEQUENTIAL, (double)stop, 0,
+                          (double)picture->stop_count - 1);
 }
 
 static void add_mark(path_picture *picture, strut_panel *panel, size_t stop,
@@ -233,19 +243,6 @@ static void add_mark(path_picture *picture, strut_panel *panel, size_t stop,
 }
 
 /* ---- the shapes ---- */
-
-/* 1, or a round factor that makes small motion visible. */
-static void choose_enlargement(path_picture *picture) {
-  double most = 0.0;
-  for (int32_t i = 0; i < 2 * picture->model->node_count; i++)
-    most = fmax(most, fabs(largest_motion(picture->path, i)));
-  picture->larger = 1.0;
-  /* Beside a ground nothing is enlarged: contact would look wrong. */
-  if (!(most > NO_MOTION * picture->model->size) || most >= SEEN * picture->model->size ||
-      picture->model->scene->ground.present)
-    return;
-  picture->larger = fmax(1.0, strut_round_below(LARGE * picture->model->size / most));
-}
 
 /* The arrow of a load at the beginning [m]: outwards from its node, or from outside onto it. */
 static void load_arrow(const path_picture *picture, const strut_load *load, double largest,
@@ -275,7 +272,7 @@ static void add_loads(path_picture *picture, strut_panel *panel) {
     double ends[2][2];
     if (!load_grows(picture->path, &scene->loads[l]) || !(hypot(force[0], force[1]) > 0)) continue;
     load_arrow(picture, &scene->loads[l], largest, ends);
-    strut_add_segment(&picture->figure, panel, STRUT_TRAIL_ARROW, pen, ends[0], ends[1])->gap = GAP;
+    strut_add_segment(&picture->figure, panel, STRUT_TRAIL_ARROW, pen, ends[0], ends[1]);
   }
 }
 
@@ -285,8 +282,9 @@ static void add_shapes(path_picture *picture, strut_panel *panel) {
   size_t members = picture->model->scene->member_count;
   for (size_t i = 0; i < picture->stop_count; i++) {
     const strut_path_state *at = picture->stops[i].at;
-    double *q = strut_figure_numbers(figure, (size_t)picture->model->length), place[2];
-    double *taut = strut_figure_numbers(figure, members); /* of cables; other members ignore it */
+    double *q = strut_figure_numbers(figure, NULL, (size_t)picture->model->length), place[2];
+    double *taut =
+        strut_figure_numbers(figure, NULL, members); /* of cables; other members ignore it */
     for (int32_t c = 0; q && c < picture->model->length; c++) q[c] = enlarged(picture, at->q, c);
     for (size_t j = 0; taut && j < members; j++) taut[j] = at->force[j] > 0 ? 1.0 : 0.0;
     strut_shape *shape = strut_add_shape(figure, panel, picture->model, q);
@@ -342,7 +340,6 @@ strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
       .upright = path->over == STRUT_PATH_OVER_ACTUATOR || path->over == STRUT_PATH_OVER_SCENE,
       .figure = {.title = model->scene->name, .aspect = CURVE}};
   choose_coordinate(&p);
-  choose_enlargement(&p);
   strut_panel *chart = strut_add_panel(&p.figure), *view = strut_add_panel(&p.figure);
   if (!p.figure.failed) chart = view - 1;
   add_curves(&p, chart, view);

@@ -30,20 +30,20 @@ typedef enum kind {
 } kind;
 
 static const struct {
-  strut_channels channel; /* 0: derived */
-  const char *name, *unit;
+  const char *channel; /* NULL: derived */
+  const char *name;
   double least; /* of the model's size: smaller ranges are rounding */
   bool change;  /* from the first frame */
-} kinds[] = {[DISPLACEMENT] = {0, "displacement", "m", 1e-6, true},
-             [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 0, false},
-             [DRIVE] = {0, "change", "m", 1e-6, false},
-             [HEIGHTS] = {0, "height", "m", 1e-6, false},
-             [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 0, false},
-             [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "rad", 0, false},
-             [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 0, false},
-             [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 0, false},
-             [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 0, false},
-             [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 0, true}};
+} kinds[] = {[DISPLACEMENT] = {NULL, "displacement", STANDING, true},
+             [NORMALS] = {"contact", "contact force", 0, false},
+             [DRIVE] = {NULL, "change", STANDING, false},
+             [HEIGHTS] = {NULL, "height", STANDING, false},
+             [FORCES] = {"force", "member force", 0, false},
+             [ANGLES] = {"angle", "angle", 0, false},
+             [MOMENTS] = {"moment", "moment", 0, false},
+             [PRESSURES] = {"pressure", "pressure", 0, false},
+             [AREAS] = {"area", "area", 0, false},
+             [ENERGIES] = {"energy", "energy change", 0, true}};
 
 /* The values of a kind: curve i is column `stride` * i. */
 typedef struct block {
@@ -86,46 +86,42 @@ static void choose_driven(block *self) {
   }
 }
 
-/* A value that is derived from the motion. */
+/* A value that is derived from the motion [m]. */
 static double derive(const block *self, size_t item, size_t f) {
   const strut_run_scene *run = self->run;
-  const double *q = strut_run_positions(run, f);
   if (self->of == DISPLACEMENT) return strut_run_measured(run, f, (int)item);
   if (self->of == HEIGHTS) {
-    const double *at = q + 2 * run->motion->contact_node[item];
+    const double *at = strut_run_positions(run, f) + 2 * run->motion->contact_node[item];
     return (at[1] - strut_run_ground_at(run, at[0])) * cos(run->model->scene->ground.slope);
   }
   int32_t member = self->driven[item / 2];
   if (item % 2 == 0) return driven_by(run, member, run->motion->time[f]);
-  return strut_member_path_length(run->model, member, q) -
+  return strut_member_path_length(run->model, member, strut_run_positions(run, f)) -
          strut_member_path_length(run->model, member, strut_run_positions(run, self->first));
 }
 
 /* The values of a kind that begins at frame `first`; a count of 0 where there are none. */
 static block find_block(const strut_run_scene *run, kind of, size_t first) {
-  const strut_scene *scene = run->model->scene;
-  block b = {.run = run, .of = of, .first = first, .stride = 1};
-  b.row = of >= KINDS         ? strut_channel_at((size_t)of - KINDS)
-          : kinds[of].channel ? strut_channel_row_of(kinds[of].channel)
-                              : NULL;
-  if (of < KINDS) {
-    b.name = kinds[of].name, b.unit = kinds[of].unit;
-    b.change = kinds[of].change;
-    b.least = of == ANGLES ? STANDING : kinds[of].least * run->model->size;
-  } else {
-    b.name = b.row->name, b.unit = b.row->unit;
-  }
+  block b = {.run = run, .of = of, .first = first, .stride = 1, .unit = "m"};
+  if (of >= KINDS)
+    b.row = strut_channel_at((size_t)of - KINDS);
+  else if (kinds[of].channel)
+    b.row = strut_channel_named(kinds[of].channel);
+  b.name = of < KINDS ? kinds[of].name : b.row->name;
+  b.change = of < KINDS && kinds[of].change;
+  if (of < KINDS) b.least = of == ANGLES ? STANDING : kinds[of].least * run->model->size;
   if (b.row) {
+    b.unit = b.row->unit;
     b.values = strut_trajectory_channel(run->motion, b.row->id);
-    b.columns = b.row->components * strut_channel_items(b.row, scene);
+    b.columns = b.row->components * strut_channel_items(b.row, run->model->scene);
     b.stride = of < ENERGIES ? b.row->components : 1;
     b.count = !b.values ? 0 : of == ENERGIES ? STORED : b.columns / b.stride;
   } else {
-    if (of == DISPLACEMENT) b.count = scene->ground.present ? 1 : 2;
-    if (of == HEIGHTS) b.count = scene->ground.present ? run->motion->contact_count : 0;
+    if (of == DISPLACEMENT) b.count = run->model->scene->ground.present ? 1 : 2;
+    if (of == HEIGHTS && run->model->scene->ground.present) b.count = run->motion->contact_count;
     if (of == DRIVE) choose_driven(&b);
     b.columns = b.count;
-    double *values = b.count ? strut_figure_numbers(run->page, run->frames * b.count) : NULL;
+    double *values = strut_figure_numbers(run->page, NULL, run->frames * b.count);
     for (size_t k = 0; values && k < run->frames * b.count; k++)
       values[k] = derive(&b, k % b.count, k / b.count);
     b.values = values;
@@ -142,22 +138,21 @@ static size_t measured(const block *self, size_t item, double (*dots)[2]) {
   const double span[] = {run->motion->time[self->first], run->motion->time[run->frames - 1]};
   if (!self->row || self->change) return 0;
   for (int k = 0; k < KINDS && self->of >= KINDS && item % self->row->components == 0; k++)
-    if (kinds[k].channel == self->row->id && !kinds[k].change) return 0;
+    if (kinds[k].channel && !kinds[k].change && !strcmp(kinds[k].channel, self->row->name))
+      return 0;
   return strut_data_dots(run->model->scene, self->row, self->stride * item, span, dots);
 }
 
 static const char *label_of(const block *self, size_t item) {
-  static const char *const energies[STORED] = {"kinetic", "elastic", "gravity", "contact"};
   static const char *const directions[] = {"along x", "along y"};
   const strut_scene *scene = self->run->model->scene;
   const strut_channel_row *row = self->row;
-  if (self->of == ENERGIES) return energies[item];
   if (self->of == DISPLACEMENT) return self->count > 1 ? directions[item] : NULL;
   if (self->of == DRIVE)
     return strut_figure_text(self->run->page, item % 2 ? "length of %s" : "rest length of %s",
                              scene->members[self->driven[item / 2]].name);
   if (self->of == HEIGHTS) row = strut_channel_row_of(STRUT_CHANNEL_CONTACT);
-  if (self->of < KINDS) return strut_channel_item(row, scene, item);
+  if (self->of < ENERGIES) return strut_channel_item(row, scene, item);
   const char *word = row->column_names[item % row->components];
   return strut_channel_is_whole(row)
              ? word
@@ -184,7 +179,7 @@ static double variation(const block *self, size_t item, size_t first) {
 
 /* Chooses the items that vary most, in the scene's order. Returns how many. */
 static size_t choose_curves(const block *self, size_t chosen[MOST_CURVES]) {
-  double *lively = strut_figure_numbers(self->run->page, self->count);
+  double *lively = strut_figure_numbers(self->run->page, NULL, self->count);
   size_t count = 0;
   for (size_t i = 0; lively && i < self->count; i++) {
     bool always = self->of == DRIVE || (self->of == DISPLACEMENT && i == 0);

@@ -68,12 +68,14 @@ static bool is_shape(const strut_run_scene *run, size_t frame) {
 
 void strut_run_find_limits(strut_run_scene *run) {
   const strut_trajectory *trajectory = run->motion;
-  double *most = strut_figure_numbers(run->page, run->frames);
+  double *most = strut_figure_numbers(run->page, NULL, run->frames);
   if (!most) return;
   for (size_t f = 0; f < run->frames && trajectory->force; f++)
     most[f] =
         strut_largest(trajectory->force + f * trajectory->member_count, trajectory->member_count);
-  run->force_limit = strut_limit_without_outliers(most, run->frames, 0.0, FEW_FRAMES, &run->beyond);
+  double range[2] = {0, 0};
+  run->beyond = strut_leave_out(most, run->frames, FEW_FRAMES, range);
+  run->force_limit = range[1];
   run->beyond.below = run->beyond.above; /* of either sign */
 }
 
@@ -91,7 +93,7 @@ void strut_run_count_frames(strut_run_scene *run) {
 }
 
 double *strut_run_coordinates(const strut_run_scene *run, size_t frame) {
-  double *q = strut_figure_numbers(run->page, (size_t)run->model->length);
+  double *q = strut_figure_numbers(run->page, NULL, (size_t)run->model->length);
   if (q) memcpy(q, strut_run_positions(run, frame), 2 * run->motion->node_count * sizeof *q);
   return q;
 }
@@ -178,7 +180,6 @@ strut_shape *strut_run_add_shape(const strut_run_scene *run, strut_panel *panel,
   shape->ground = true;
   shape->moving = trajectory->time != NULL;
   shape->force_limit = run->contact_limit;
-  shape->arrow = STRUT_RUN_ARROW;
   if (trajectory->force) {
     shape->style.colouring = STRUT_COLOUR_FORCE;
     shape->style.values = shape->style.slack_forces =

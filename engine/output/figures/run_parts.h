@@ -20,9 +20,6 @@ typedef struct strut_run_scene {
   strut_figure *page;   /* that is filled in */
 } strut_run_scene;
 
-/** Length of the arrow for the largest force of the ground [pt]. */
-#define STRUT_RUN_ARROW 20.0
-
 /** Shorter than the time between any two frames [s]. */
 #define STRUT_RUN_MOMENT 1e-9
 

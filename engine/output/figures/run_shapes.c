@@ -69,7 +69,7 @@ static bool find_anchor(const strut_run_scene *run, size_t node, double at[2]) {
 
 /* The centres of enlargement as coordinates; NULL: out of memory. */
 static double *find_anchors(const strut_run_scene *run, bool *grounded) {
-  double *rest = strut_figure_numbers(run->page, (size_t)run->model->length);
+  double *rest = strut_figure_numbers(run->page, NULL, (size_t)run->model->length);
   for (size_t i = 0; rest && i < run->motion->node_count; i++)
     *grounded |= find_anchor(run, i, rest + 2 * i);
   return rest;
@@ -218,8 +218,11 @@ static double way_to(const strut_run_scene *run, const grid *self, size_t i) {
   return strut_run_measured(run, self->frame[i], 0) - strut_run_measured(run, self->frame[0], 0);
 }
 
-/* The range of all cells along each axis: one for all where the shapes are close together. */
-static void find_sizes(const strut_run_scene *run, grid *self) {
+/*
+ * What a cell shows is as large as what all others do: the same where the shapes are close together, on level ground even
+ * those farther apart above each other; else about its own middle, from its foot on.
+ */
+static void share_bounds(const strut_run_scene *run, grid *self) {
   const strut_ground *ground = &run->model->scene->ground;
   double most = COMMON * fmax(self->size[0], self->size[1]);
   for (size_t i = 0; i < self->count; i++)
@@ -227,32 +230,16 @@ static void find_sizes(const strut_run_scene *run, grid *self) {
         self->moves || fabs(way_to(run, self, i)) > SEEN * strut_bounds_extent(&self->all);
   for (int d = 0; d < 2; d++) {
     double together = self->all.high[d] - self->all.low[d];
-    bool line = d == 1 && ground->present, slope = line && ground->slope != 0 && !self->common[0];
-    double far = line ? LEVEL : 1; /* on the ground even those farther apart */
-    self->common[d] = !slope && together <= far * fmax(COMMON * self->size[d], 0.5 * most);
+    bool level = d == 1 && ground->present && ground->slope == 0;
+    self->common[d] = together <= (level ? LEVEL : 1) * most;
     if (self->common[d]) self->size[d] = together;
   }
-}
-
-/* What a cell shows, as large as all others: about its middle, from its foot or the ground on. */
-static strut_bounds bounds_of(const grid *self, strut_bounds own) {
-  strut_bounds_share(&own, self->size);
-  for (int d = 0; d < 2; d++)
-    if (self->common[d]) own.low[d] = self->all.low[d], own.high[d] = self->all.high[d];
-  return own;
-}
-
-/* One digit more than the times need to differ. */
-static int count_digits(const strut_run_scene *run, const grid *self) {
-  double least = HUGE_VAL, latest = 0;
   for (size_t i = 0; i < self->count; i++) {
-    double time = run->motion->time[self->frame[i]];
-    double before = i ? run->motion->time[self->frame[i - 1]] : -HUGE_VAL;
-    latest = fmax(latest, fabs(time));
-    if (fabs(time - before) > STRUT_RUN_MOMENT) least = fmin(least, fabs(time - before));
+    strut_bounds *own = &self->panels[i].bounds;
+    strut_bounds_share(own, self->size);
+    for (int d = 0; d < 2; d++)
+      if (self->common[d]) own->low[d] = self->all.low[d], own->high[d] = self->all.high[d];
   }
-  double digits = isfinite(least) && latest > 0 ? ceil(log10(latest / least)) + 2 : 4;
-  return (int)fmax(3, fmin(digits, 9));
 }
 
 static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
@@ -260,11 +247,10 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
   double way = way_to(run, self, i), start = strut_run_measured(run, self->frame[0], 0);
   bool far = i > 0 && fabs(way) > 1e-6 * run->model->size;
   double time = run->motion->time[self->frame[i]];
-  panel->title = strut_figure_text(
-      run->page, "%s%s%s%s", strut_quantity_of(time, count_digits(run, self), "s").text,
-      far ? ", x " : "", far && way > 0 ? "+" : "", far ? strut_quantity_of(way, 3, "m").text : "");
+  panel->title = strut_figure_text(run->page, "%s%s%s%s", strut_quantity_of(time, 5, "s").text,
+                                   far ? ", x " : "", far && way > 0 ? "+" : "",
+                                   far ? strut_quantity_of(way, 3, "m").text : "");
   strut_run_add_shape(run, panel, self->frame[i])->names = true;
-  panel->bounds = bounds_of(self, panel->bounds);
   panel->margin = MARGIN;
   if (!self->common[0] || !self->moves) return;
   /* Where the measured point began. */
@@ -277,7 +263,7 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
 const char *strut_run_snapshots(strut_run_scene *run, strut_figure *figure) {
   grid g = {0};
   find_cells(run, &g);
-  find_sizes(run, &g);
+  share_bounds(run, &g);
   for (size_t i = 0; i < g.count; i++) fill_cell(run, &g, i);
   bool marked = g.common[0] && g.moves;
   figure->columns = g.count;

@@ -1,13 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shapes in panels: a form that was found, forces, self-stress, mechanisms and modes; waves. */
 #include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/output/draw/figure.h"
 
 static const double MARGIN = 20; /* [pt] */
+
+/* A shape displaced along a motion, its farthest node by that much [m]; NULL: out of memory. */
+static double *displace(strut_figure *figure, const strut_model *model, const double *positions,
+                        const double *motion, double swing) {
+  double most = 0.0, *moved = strut_figure_numbers(figure, positions, (size_t)model->length);
+  for (int32_t i = 0; i < model->node_count; i++)
+    most = fmax(most, hypot(motion[2 * i], motion[2 * i + 1]));
+  for (int32_t i = 0; i < model->length && most > 0 && moved; i++)
+    moved[i] += swing / most * motion[i];
+  return moved;
+}
 
 /* ---- a form that was found ---- */
 
@@ -18,8 +31,8 @@ strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
                          .aspect = 0.9,
                          .yardstick = true};
   size_t members = model->scene->member_count;
-  double *before = strut_figure_numbers(&figure, (size_t)model->length), moved = 0;
-  double *force = strut_figure_numbers(&figure, members);
+  double *before = strut_figure_numbers(&figure, NULL, (size_t)model->length), moved = 0;
+  double *force = strut_figure_numbers(&figure, NULL, members);
   strut_panel *panel = strut_add_panel(&figure);
   panel->margin = MARGIN;
   if (before) memcpy(before, drawn, (size_t)model->node_count * sizeof *drawn);
@@ -81,10 +94,11 @@ static void add_forces(picture *self, const char *title, const double *force) {
 static void add_mechanism(picture *self, int32_t number) {
   const strut_mechanism *mechanism = &self->rigidity->mechanisms.list[number];
   const strut_equilibrium_matrix *matrix = &self->rigidity->matrix;
-  double *moved = strut_figure_copy(&self->figure, self->q, (size_t)self->model->length);
-  double most = strut_largest(mechanism->motion, (size_t)matrix->rows);
-  for (int32_t r = 0; r < matrix->rows && most > 0 && moved; r++)
-    moved[matrix->coordinate[r]] += self->swing / most * mechanism->motion[r];
+  double *motion = strut_figure_numbers(&self->figure, NULL, (size_t)self->model->length), *moved;
+  for (int32_t r = 0; r < matrix->rows && motion; r++)
+    motion[matrix->coordinate[r]] = mechanism->motion[r];
+  if (!motion || !(moved = displace(&self->figure, self->model, self->q, motion, self->swing)))
+    return;
   strut_panel *panel =
       add_panel(self, strut_figure_text(&self->figure, "mechanism %d, %s", (int)number + 1,
                                         strut_motion_kind_name(mechanism->kind)));
@@ -95,7 +109,7 @@ static void add_mechanism(picture *self, int32_t number) {
     shape->style.no_supports = k == 1;
     if (k) shape->style.colour = strut_palette_thing(0);
   }
-  if (moved) strut_add_displacements(&self->figure, panel, self->model, self->q, moved);
+  strut_add_displacements(&self->figure, panel, self->model, self->q, moved);
 }
 
 /* Forces, states of self-stress, mechanisms: as many as go in; the last two share the room. Returns how many do not. */
@@ -151,4 +165,193 @@ strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *mo
   p.figure.scale.name =
       !p.figure.failed && p.figure.panels->shapes->style.limit > 0 ? "force, of the largest" : NULL;
   return strut_figure_draw(plot, &p.figure, error);
+}
+
+/* ---- modes ---- */
+
+enum { NAMED = 12, TITLE = 200, MOST = STRUT_MODES_FIGURE_MOST };
+
+static const double MODE_MARGIN = 13.0, NARROWEST = 112.0; /* [pt]; panels, for their titles */
+static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displacement over size */
+
+typedef struct mode_picture {
+  const strut_model *model;
+  const strut_modes *modes;
+  size_t count, rigid, higher; /* shown, and not */
+  const strut_mode *shown[MOST];
+  double *taut; /* (members) 0 where a cable is slack at rest */
+  double size;  /* larger extent of the shape at rest [m] */
+  strut_figure figure;
+} mode_picture;
+
+/* Chooses the modes with panels: rigid-body motions only if there are no others. Counts the rest. */
+static void choose_modes(mode_picture *self, size_t panels) {
+  size_t others = 0, most = panels ? panels : STRUT_MODES_FIGURE_PANELS;
+  if (most > MOST) most = MOST;
+  for (size_t i = 0; i < self->modes->count; i++)
+    others += self->modes->list[i].kind != STRUT_MODE_RIGID;
+  for (size_t i = 0; i < self->modes->count; i++) {
+    bool rigid = self->modes->list[i].kind == STRUT_MODE_RIGID;
+    if (self->count < most && !(others && rigid))
+      self->shown[self->count++] = &self->modes->list[i];
+    else
+      ++*(rigid ? &self->rigid : &self->higher);
+  }
+}
+
+/* Strains of all members by the displacement drawn, to first order: from that against it to that along it. */
+static double find_strains(const mode_picture *self, const double *moved, const double *back,
+                           double *strain) {
+  double largest = 0.0;
+  for (int32_t j = 0; j < (int32_t)self->model->scene->member_count; j++) {
+    double length = strut_member_path_length(self->model, j, self->modes->q);
+    double change = strut_member_path_length(self->model, j, moved) -
+                    strut_member_path_length(self->model, j, back);
+    strain[j] = length > 0 ? 0.5 * change / length : 0.0;
+    largest = fmax(largest, fabs(strain[j]));
+  }
+  return largest > UNSTRAINED ? largest : 1.0;
+}
+
+/* "mode 3: 1.02 Hz, zeta = 0.1" and the moving nodes. */
+static void describe_mode(strut_figure *figure, const strut_mode *mode, size_t number,
+                          strut_panel *to) {
+  static const char *const kinds[] = {[STRUT_MODE_RIGID] = "rigid-body motion",
+                                      [STRUT_MODE_MECHANISM] = "mechanism",
+                                      [STRUT_MODE_UNSTABLE] = "unstable",
+                                      [STRUT_MODE_UNKNOWN] = "frequency not known"};
+  const char *end = strchr(mode->description, ';'), *rest = "";
+  int length = strut_text_bytes(mode->description, end ? (int)(end - mode->description) : TITLE);
+  if (mode->just_taut)
+    rest = strut_figure_text(figure, ", %d member%s just taut", (int)mode->just_taut,
+                             mode->just_taut == 1 ? "" : "s");
+  else if (mode->kind == STRUT_MODE_ELASTIC && mode->damping_ratio > 0)
+    rest = strut_figure_text(figure, ", \xCE\xB6 = %.2g", mode->damping_ratio);
+  const strut_rounded_quantity frequency =
+      strut_quantity_of(mode->angular_frequency / STRUT_TAU, 4, "Hz");
+  to->title = strut_figure_text(
+      figure, "mode %zu: %s%s", number,
+      mode->kind == STRUT_MODE_ELASTIC ? frequency.text : kinds[mode->kind], rest);
+  bool grows = mode->kind == STRUT_MODE_UNSTABLE;
+  to->note =
+      strut_figure_text(figure, "%s%s%s%.*s", grows ? "grows e-fold in " : "",
+                        grows ? strut_quantity_of(1.0 / sqrt(-mode->eigenvalue), 3, "s").text : "",
+                        grows ? ": " : "", length, mode->description);
+}
+
+/* The shape at rest, and displaced. */
+static void add_mode(mode_picture *self, const strut_mode *mode) {
+  const strut_model *model = self->model;
+  const double *q = self->modes->q;
+  strut_panel *panel = strut_add_panel(&self->figure);
+  const double swing = STRUT_MODES_FIGURE_SWING * self->size;
+  double *moved = displace(&self->figure, model, q, mode->shape, swing);
+  double *back = displace(&self->figure, model, q, mode->shape, -swing);
+  double *strain = strut_figure_numbers(&self->figure, NULL, model->scene->member_count);
+  if (!moved || !back || !strain) return;
+  describe_mode(&self->figure, mode, (size_t)(mode - self->modes->list) + 1, panel);
+  panel->margin = MODE_MARGIN;
+  strut_shape *shape = strut_add_ghost(&self->figure, panel, model, q, 0.8);
+  shape->style.slack_forces = self->taut;
+  shape->style.no_supports = false;
+  shape->ground = true;
+  shape = strut_add_forces(&self->figure, panel, model, moved, strain,
+                           find_strains(self, moved, back, strain));
+  shape->style.slack_forces = self->taut;
+  shape->style.no_supports = true;
+  shape->ground = false;
+  strut_add_displacements(&self->figure, panel, model, q, moved);
+  shape->names = model->node_count <= NAMED;
+  for (int32_t k = 0; k < self->modes->closed_count; k++) {
+    const double *at = q + 2 * self->modes->closed[k];
+    strut_add_mark(&self->figure, panel, at[0], at[1], NULL)->ring = true;
+  }
+}
+
+static void add_modes(mode_picture *self) {
+  size_t members = self->model->scene->member_count;
+  self->taut = strut_figure_numbers(&self->figure, NULL, members);
+  for (size_t j = 0; self->taut && j < members; j++)
+    self->taut[j] = self->model->scene->members[j].kind != STRUT_CABLE ||
+                    strut_member_path_length(self->model, (int32_t)j, self->modes->q) >
+                        self->model->members.rest[j] * (1 - 1e-12);
+  const strut_bounds bounds = strut_bounds_of(self->model, self->modes->q);
+  self->size = strut_bounds_extent(&bounds);
+  if (!(self->size > 0)) self->size = self->model->size;
+  for (size_t k = 0; k < self->count; k++) add_mode(self, self->shown[k]);
+}
+
+static void add_keys(mode_picture *self) {
+  const strut_modes *modes = self->modes;
+  const strut_pen grey = {.colour = strut_grey(0.8), .width = 1.8};
+  const strut_pen ring = {.colour = strut_grey(0.1), .width = 0.9};
+  strut_add_key(
+      &self->figure, STRUT_KEY_LINE, grey,
+      strut_figure_text(&self->figure, "%s %.*s%s", modes->at_rest ? "equilibrium" : "shape",
+                        strut_text_bytes(modes->at, 150), modes->at,
+                        modes->at_rest ? "" : " (no equilibrium)"));
+  if (modes->closed_count) strut_add_key(&self->figure, STRUT_KEY_DOT, ring, "closed contact");
+  const char *rest = "";
+  if (self->rigid)
+    rest = strut_figure_text(&self->figure, ": %zu rigid-body motion%s", self->rigid,
+                             self->rigid > 1 ? "s" : "");
+  if (self->higher)
+    rest = strut_figure_text(&self->figure, "%s%s%zu higher mode%s", rest, *rest ? ", " : ": ",
+                             self->higher, self->higher > 1 ? "s" : "");
+  if (*rest)
+    strut_add_key(&self->figure, STRUT_KEY_WORDS, grey,
+                  strut_figure_text(&self->figure, "not drawn%s", rest));
+}
+
+strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
+                                const strut_modes *modes, size_t panels, strut_error *error) {
+  mode_picture p = {.model = model,
+                    .modes = modes,
+                    .figure = {.title = model->scene->name,
+                               .columns = MOST,
+                               .least_width = NARROWEST,
+                               .aspect = 0.95,
+                               .shared_axes = true}};
+  choose_modes(&p, panels);
+  add_modes(&p);
+  add_keys(&p);
+  p.figure.scale = strut_force_scale(1, NULL);
+  p.figure.scale.name = "strain, of the mode's largest", p.figure.scale.unit = "";
+  return strut_figure_draw(plot, &p.figure, error);
+}
+
+/* ---- waves ---- */
+
+/* Over one step the phase itself; over two the place on the line, with its corners by name. */
+static const char *name_axis(const strut_waves *waves, strut_figure *figure) {
+  const char *text = "wave vector:";
+  if (waves->steps == 1) return "phase from cell to cell in turns";
+  for (int32_t i = 0; i < waves->corner_count && waves->steps == 2; i++)
+    text = strut_figure_text(figure, "%s%s %s at %d", text, i ? "," : "",
+                             waves->corner[i].name[0] == 'G' ? "\u0393" : waves->corner[i].name,
+                             (int)i);
+  return text;
+}
+
+strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model,
+                                const strut_waves *waves, strut_error *error) {
+  strut_figure figure = {.title = model->scene->name};
+  strut_panel *panel = strut_add_panel(&figure);
+  bool one = waves->steps == 1;
+  for (int32_t b = 0; b < waves->shown; b++) {
+    strut_series *series = strut_add_series(&figure, panel, NULL);
+    series->look = 0;
+    series->markers = STRUT_MARKERS_NONE;
+    for (size_t i = 0; i < waves->count; i++)
+      strut_add_point(&figure, series, one ? waves->phase[i][0] : waves->along[i],
+                      waves->frequency[i * (size_t)waves->band_count + (size_t)b]);
+  }
+  for (size_t g = 0; g < waves->gap_count; g++)
+    if (waves->gaps[g].below < waves->shown)
+      strut_add_band(&figure, panel, waves->gaps[g].low, waves->gaps[g].high, "no waves")->level =
+          true;
+  panel->x = (strut_axis){.name = name_axis(waves, &figure),
+                          .high = one ? 0.5 : waves->corner_count - 1.0};
+  panel->y = strut_axis_of("frequency", "Hz");
+  return strut_figure_draw(plot, &figure, error);
 }

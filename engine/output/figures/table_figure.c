@@ -26,16 +26,15 @@ enum {
 typedef struct maker {
   const strut_plot *plot;
   const strut_study_figure *wanted;
-  strut_table_marks marks;
+  bool spread;
   int x, y[STRUT_MOST_Y], y_count, panel;
   int by, band, low, high, stable, line, mark, thing; /* of curves */
   int value, doubt;                                   /* of maps and points */
   const char *band_text;
-  strut_table_rows rows;
+  strut_table table;                 /* what is shown of the given one */
   strut_table_groups panels, curves; /* curves, or categories of a map */
   strut_table_groups places;         /* along x, of bars; else none */
   strut_table_groups kinds;          /* of marks */
-  size_t deepest;                    /* the most rows of one of them in a curve */
   double *at[2];                     /* of a map: the grid's positions */
   size_t count[2];
   strut_figure page;
@@ -52,11 +51,16 @@ static int find_column(const strut_table *table, const char *name, const char **
 static bool is_map(const maker *self) { return self->wanted->kind == STRUT_FIGURE_MAP; }
 
 static const strut_table_column *column_of(const maker *self, int column) {
-  return column == STRUT_NO_COLUMN ? NULL : &self->rows.table->columns[column];
+  return column == STRUT_NO_COLUMN ? NULL : &self->table.columns[column];
 }
 
 static double value_of(const maker *self, int column, size_t row) {
-  return strut_table_number(&self->rows, column, row);
+  const strut_table_column *of = column_of(self, column);
+  return of && of->value ? of->value[row] : (double)NAN;
+}
+
+static bool is_of(const maker *self, int column, const char *text, size_t row) {
+  return column == STRUT_NO_COLUMN || strcmp(column_of(self, column)->text[row], text) == 0;
 }
 
 /* The index of a text; NAN without one. */
@@ -85,18 +89,8 @@ static const char *group_text(maker *self, int column, const strut_table_groups 
            : groups->name[i]);
 }
 
-/* "velocity", or "velocity, b less a", or "velocity, friction 0.3 less 0.1". */
-static const char *name_of(maker *self, int column) {
-  const strut_table_column *of = column_of(self, column);
-  if (!of->value || !strut_table_compares(&self->rows, column)) return of->name;
-  const char *between = self->wanted->difference;
-  bool named = column_of(self, find_column(self->rows.table, between, NULL))->value;
-  return strut_figure_text(&self->page, "%s, %s%s%s less %s", of->name, named ? between : "",
-                           named ? " " : "", self->rows.side[1], self->rows.side[0]);
-}
-
 static bool is_in_panel(const maker *self, size_t panel, size_t row) {
-  return strut_table_belongs(&self->rows, self->panel, self->panels.name[panel], row);
+  return is_of(self, self->panel, self->panels.name[panel], row);
 }
 
 /* ---- curves and bars ---- */
@@ -104,9 +98,8 @@ static bool is_in_panel(const maker *self, size_t panel, size_t row) {
 /* Rows of one curve in one panel. Returns how many. */
 static size_t rows_of(const maker *self, size_t panel, size_t curve, size_t *rows) {
   size_t count = 0;
-  for (size_t i = 0; i < self->rows.table->row_count; i++)
-    if (is_in_panel(self, panel, i) &&
-        strut_table_belongs(&self->rows, self->by, self->curves.name[curve], i))
+  for (size_t i = 0; i < self->table.row_count; i++)
+    if (is_in_panel(self, panel, i) && is_of(self, self->by, self->curves.name[curve], i))
       rows[count++] = i;
   return count;
 }
@@ -139,7 +132,7 @@ static void add_bands(maker *self, const size_t *rows, size_t count, strut_panel
 
 /* What the legend says of y column k of a curve; NULL: there is one curve only. */
 static const char *curve_name(maker *self, size_t curve, int k) {
-  const char *column = name_of(self, self->y[k]);
+  const char *column = column_of(self, self->y[k])->name;
   bool several = self->y_count > 1;
   if (self->wanted->label_count)
     return self->wanted->labels[curve * (size_t)self->y_count + (size_t)k];
@@ -183,14 +176,17 @@ static bool is_gap(const maker *self, size_t row, size_t next) {
 /* A bar for each row at the place of its text: series n beside the others, rows of one text beside each other. */
 static void add_bars(maker *self, strut_panel *panel, strut_series *series, size_t n,
                      const size_t *rows, size_t count) {
-  double next[STRUT_MOST_TABLE_GROUPS]; /* bars left of the next one at a place */
-  for (size_t i = 0; i < self->places.count; i++)
-    next[i] = ((double)n + 0.5) * (double)self->deepest;
-  for (size_t i = 0; i < count; i++) next[group_of(self, self->x, &self->places, rows[i])] -= 0.5;
-  series->bar = BARS / (double)(self->curves.count * (size_t)self->y_count * self->deepest);
+  size_t used[STRUT_MOST_TABLE_GROUPS] = {0}, drawn[STRUT_MOST_TABLE_GROUPS] = {0}, deepest = 1;
+  double width = BARS / (double)(self->curves.count * (size_t)self->y_count);
   for (size_t i = 0; i < count; i++) {
     size_t place = group_of(self, self->x, &self->places, rows[i]);
-    double x = (double)place - 0.5 * BARS + (next[place]++ + 0.5) * series->bar;
+    if (++used[place] > deepest) deepest = used[place];
+  }
+  series->bar = width / (double)deepest;
+  for (size_t i = 0; i < count; i++) {
+    size_t place = group_of(self, self->x, &self->places, rows[i]);
+    double beside = (double)drawn[place]++ - 0.5 * ((double)used[place] - 1);
+    double x = (double)place - 0.5 * BARS + ((double)n + 0.5) * width + beside * series->bar;
     if (is_in_band(self, rows[i]))
       add_band(self, panel, x - 0.5 * series->bar, x + 0.5 * series->bar);
     add_row(self, panel, series, self->y[n % (size_t)self->y_count], rows[i], x);
@@ -199,21 +195,20 @@ static void add_bars(maker *self, strut_panel *panel, strut_series *series, size
 
 static void add_curves(maker *self, size_t number, strut_panel *panel) {
   size_t all = self->curves.count * (size_t)self->y_count, places = self->places.count;
-  size_t *row =
-      strut_arena_allocate(&self->page.arena, self->rows.table->row_count + 1, sizeof *row);
+  size_t *row = strut_arena_allocate(&self->page.arena, self->table.row_count + 1, sizeof *row);
   panel->outliers = self->stable == STRUT_NO_COLUMN;
   self->page.failed |= !row;
   for (size_t n = 0, count = 0; n < all && row; n++) {
     size_t curve = n / (size_t)self->y_count, k = n % (size_t)self->y_count;
     if (k == 0) count = rows_of(self, number, curve, row);
     if (k == 0 && !places) add_bands(self, row, count, panel);
-    if (!count && self->wanted->apart) continue;
     strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
     if (places) add_bars(self, panel, series, n, row, count);
     if (self->stable != STRUT_NO_COLUMN)
       series->pen = (strut_pen){.colour = strut_palette_thing(n), .width = WIDTH};
     for (size_t i = 0; i < count && !places; i++) {
-      if (i && is_gap(self, row[i - 1], row[i])) strut_add_gap(&self->page, series);
+      if (i && is_gap(self, row[i - 1], row[i]))
+        strut_add_point(&self->page, series, (double)NAN, (double)NAN);
       add_row(self, panel, series, self->y[k], row[i], value_of(self, self->x, row[i]));
     }
   }
@@ -229,7 +224,7 @@ static void add_keys(maker *self) {
   static const char *const words[] = {"stable", "unstable"};
   for (int k = 0; k < 2 && stable; k++) {
     bool some = false;
-    for (size_t i = 0; i < self->rows.table->row_count; i++)
+    for (size_t i = 0; i < self->table.row_count; i++)
       some = some || (strcmp(stable->text[i], "no") == 0) == k;
     strut_pen pen = {.colour = strut_grey(0.2), .width = WIDTH, .dash = {k ? 3 : 0, 2}, .butt = k};
     if (some) strut_add_key(&self->page, STRUT_KEY_LINE, pen, words[k]);
@@ -252,8 +247,9 @@ static void add_points(maker *self, size_t number, strut_panel *panel) {
     strut_series *cloud = strut_add_series(&self->page, panel, NULL);
     cloud->cloud = true;
     cloud->look = 0;
-    for (size_t i = 0; i < self->rows.table->row_count; i++) {
-      if (!is_in_panel(self, number, i) || self->marks.marked[i] != marked) continue;
+    for (size_t i = 0; i < self->table.row_count; i++) {
+      if (!is_in_panel(self, number, i) || (*column_of(self, self->mark)->text[i] != 0) != marked)
+        continue;
       double x = value_of(self, self->x, i), y = value_of(self, self->y[0], i);
       strut_add_point(&self->page, cloud, x, y)->value = value_of(self, self->value, i);
       if (marked) strut_add_mark(&self->page, panel, x, y, NULL)->ring = true;
@@ -269,11 +265,10 @@ static void add_points(maker *self, size_t number, strut_panel *panel) {
 
 /* The different finite values of a column, ascending. */
 static void find_positions(maker *self, int column, int d) {
-  double *all = strut_figure_numbers(&self->page, self->rows.table->row_count);
+  double *all = strut_figure_numbers(&self->page, NULL, self->table.row_count);
   size_t used = 0, *kept = &self->count[d];
-  for (size_t i = 0; all && i < self->rows.table->row_count; i++)
-    if (self->rows.shown[i] && isfinite(value_of(self, column, i)))
-      all[used++] = value_of(self, column, i);
+  for (size_t i = 0; all && i < self->table.row_count; i++)
+    if (isfinite(value_of(self, column, i))) all[used++] = value_of(self, column, i);
   if (used) gsl_sort(all, 1, used);
   double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
   for (size_t i = 0; i < used; i++)
@@ -304,7 +299,7 @@ static strut_status prepare_grid(maker *self) {
   strut_table_groups *names = &self->curves;
   strut_status status = STRUT_OK;
   if (!column_of(self, self->value)->value)
-    status = strut_table_groups_find(&self->rows, self->value, STRUT_MOST_TABLE_GROUPS,
+    status = strut_table_groups_find(&self->table, self->value, STRUT_MOST_TABLE_GROUPS,
                                      "categories", names, self->error);
   if (status) return status;
   qsort(names->name, names->count, sizeof *names->name, by_text);
@@ -341,12 +336,12 @@ static void spread(const maker *self, uint32_t *row, uint32_t *before) {
 static uint32_t *find_rows(maker *self, size_t number) {
   size_t cells = self->count[0] * self->count[1];
   uint32_t *row = strut_arena_allocate(&self->page.arena, cells, sizeof *row);
-  for (size_t i = 0; row && i < self->rows.table->row_count; i++) {
+  for (size_t i = 0; row && i < self->table.row_count; i++) {
     double x = value_of(self, self->x, i), y = value_of(self, self->y[0], i);
     if (is_in_panel(self, number, i) && isfinite(x) && isfinite(y))
       row[nearest_index(self, 1, y) * self->count[0] + nearest_index(self, 0, x)] = (uint32_t)i + 1;
   }
-  if (row && self->marks.spread)
+  if (row && self->spread)
     spread(self, row, strut_arena_allocate(&self->page.arena, cells, sizeof *row));
   return row;
 }
@@ -355,9 +350,8 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
   const strut_table_column *of = column_of(self, self->value),
                            *doubt = column_of(self, self->doubt);
   size_t count = self->count[0] * self->count[1];
-  bool other = self->rows.partner && !of->value; /* of categories */
   strut_map *map = strut_arena_allocate(&self->page.arena, 1, sizeof *map);
-  double *value = strut_figure_numbers(&self->page, count);
+  double *value = strut_figure_numbers(&self->page, NULL, count);
   bool *doubtful = strut_arena_allocate(&self->page.arena, count, sizeof *doubtful);
   const uint32_t *cells = find_rows(self, number);
   panel->map = map;
@@ -368,8 +362,7 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
     value[k] = !cells[k]   ? (double)NAN
                : of->value ? value_of(self, self->value, row)
                            : index_of(&self->curves, of->text[row]);
-    doubtful[k] = cells[k] && (other ? strut_table_differs(&self->rows, self->value, row)
-                                     : doubt && is_doubtful(doubt->text[row]));
+    doubtful[k] = cells[k] && doubt && is_doubtful(doubt->text[row]);
   }
   *map = (strut_map){.columns = self->count[0],
                      .rows = self->count[1],
@@ -378,19 +371,18 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
                      .name_count = self->curves.count,
                      .names = of->value ? NULL : self->curves.name,
                      .value = value,
-                     .doubtful = doubt || other ? doubtful : NULL,
+                     .doubtful = doubt ? doubtful : NULL,
                      .doubt = doubt ? doubt->name : NULL};
-  if (other) map->doubt = strut_figure_text(&self->page, "%s: other", self->rows.side[0]);
 }
 
 /* ---- the whole ---- */
 
 /* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
 static const char *name_y_axis(maker *self) {
-  const char *text = name_of(self, self->y[0]);
+  const char *text = column_of(self, self->y[0])->name;
   if (self->y_count > MOST_NAMES) return "";
   for (int k = 1; k < self->y_count; k++)
-    text = strut_figure_text(&self->page, "%s, %s", text, name_of(self, self->y[k]));
+    text = strut_figure_text(&self->page, "%s, %s", text, column_of(self, self->y[k])->name);
   return self->y_count > 1 && strlen(text) > NAME ? "" : text;
 }
 
@@ -414,24 +406,6 @@ static bool has_bars(const maker *self) {
          !column_of(self, self->x)->value;
 }
 
-/* Finds the most rows with the same text in a curve of a panel. */
-static strut_status find_deepest(maker *self) {
-  size_t cells = self->panels.count * self->curves.count * self->places.count;
-  size_t *used = strut_arena_allocate(&self->page.arena, cells + 1, sizeof *used);
-  if (!used) return strut_no_memory(self->error, "while drawing");
-  for (size_t i = 0; i < self->rows.table->row_count; i++) {
-    if (!self->rows.shown[i]) continue;
-    size_t curve = group_of(self, self->panel, &self->panels, i) * self->curves.count +
-                   group_of(self, self->by, &self->curves, i);
-    size_t *rows = &used[curve * self->places.count + group_of(self, self->x, &self->places, i)];
-    if (++*rows > self->deepest) self->deepest = *rows;
-  }
-  return self->deepest <= STRUT_MOST_TABLE_GROUPS
-             ? STRUT_OK
-             : strut_fail(self->error, STRUT_USAGE, "column '%.60s' has the same text in %zu rows",
-                          column_of(self, self->x)->name, self->deepest);
-}
-
 /* Checks the columns and finds the groups of rows. */
 static strut_status prepare(maker *self) {
   const strut_table_column *first = column_of(self, self->y[0]);
@@ -443,14 +417,14 @@ static strut_status prepare(maker *self) {
     strut_table_groups *groups;
   } groups[] = {{bars, self->x, "places", &self->places},
                 {true, self->panel, "panels", &self->panels},
-                {self->mark != STRUT_NO_COLUMN, self->mark, "marks", &self->kinds},
+                {!points && self->mark != STRUT_NO_COLUMN, self->mark, "marks", &self->kinds},
                 {!is_map(self) && !points, self->by, "curves", &self->curves}};
   strut_status status = bars ? STRUT_OK : check_column(self, self->x, NULL);
   for (int k = 0; k < self->y_count && !status; k++) status = check_column(self, self->y[k], first);
   if (!status && points && self->value >= 0) status = check_column(self, self->value, NULL);
   for (size_t i = 0; i < sizeof groups / sizeof *groups && !status; i++)
     if (groups[i].wanted)
-      status = strut_table_groups_find(&self->rows, groups[i].column, STRUT_MOST_TABLE_GROUPS,
+      status = strut_table_groups_find(&self->table, groups[i].column, STRUT_MOST_TABLE_GROUPS,
                                        groups[i].what, groups[i].groups, self->error);
   if (!status && bars && self->plot->x.logarithmic)
     status = strut_fail(self->error, STRUT_USAGE,
@@ -460,7 +434,6 @@ static strut_status prepare(maker *self) {
   if (!status && labels && labels != curves)
     status = strut_fail(self->error, STRUT_USAGE, "%zu labels were given for %zu curve%s", labels,
                         curves, curves == 1 ? "" : "s");
-  if (!status && bars) status = find_deepest(self);
   return status || !is_map(self) ? status : prepare_grid(self);
 }
 
@@ -470,14 +443,12 @@ static void add_panel(maker *self, size_t i) {
   strut_panel *panel = strut_add_panel(&self->page);
   panel->x = strut_axis_in(x->name, x->unit, x->shown);
   panel->y = strut_axis_in(name_y_axis(self), y->unit, y->shown);
-  panel->lost = self->wanted->lost;
-  panel->room = panel->lost ? 0.06 : 0;
   if (value && value->value)
-    panel->scale = (strut_colour_scale){.name = name_of(self, self->value),
+    panel->scale = (strut_colour_scale){.name = value->name,
                                         .unit = value->unit,
                                         .shown = value->shown,
                                         .colours = (strut_colours)self->wanted->colours};
-  if (is_map(self) && self->rows.partner && panel->scale.colours == STRUT_COLOURS_AUTO)
+  if (is_map(self) && self->wanted->difference && panel->scale.colours == STRUT_COLOURS_AUTO)
     panel->scale.colours = STRUT_COLOURS_DIVERGING;
   if (self->panel != STRUT_NO_COLUMN) /* "a) friction = 0.1" */
     panel->title = strut_figure_text(&self->page, "%c) %s", (char)('a' + (int)(i % 26)),
@@ -508,36 +479,39 @@ static void find_columns(maker *self, const strut_table *table) {
     end = y + strcspn(y, ",");
     self->y[self->y_count++] = strut_table_column_of(table, y, (size_t)(end - y));
   }
-  /* Rows that are compared are equal in these columns. */
-  self->rows = (strut_table_rows){.table = table,
-                                  .keys = {map ? self->y[0] : self->by, self->panel, self->x},
-                                  .between = wanted->kind == STRUT_FIGURE_MOTION,
-                                  .values = map ? &self->value : self->y,
-                                  .value_count = map ? 1 : (size_t)self->y_count};
+}
+
+/* What is shown: some rows, or differences; of categories, where they differ, which is hatched. */
+static strut_status choose_rows(maker *self, const strut_table *table) {
+  bool map = is_map(self);
+  const char *text = NULL;
+  int only = find_column(table, self->wanted->only, &text);
+  int between = find_column(table, self->wanted->difference, NULL);
+  const strut_table_pairing pairing = {.keys = {map ? self->y[0] : self->by, self->panel, self->x},
+                                       .between = self->wanted->kind == STRUT_FIGURE_MOTION,
+                                       .values = map ? &self->value : self->y,
+                                       .value_count = map ? 1 : (size_t)self->y_count};
+  strut_status status = strut_table_choose(table, only, text, NULL, &self->table, self->error);
+  if (status || between == STRUT_NO_COLUMN) return status;
+  if (map && !column_of(self, self->value)->value) self->doubt = (int)table->column_count;
+  return strut_table_subtract(&self->table, between, &pairing, self->error);
 }
 
 strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *figure,
-                              const strut_table *table, strut_table_marks marks,
-                              strut_error *error) {
-  const char *text = NULL;
-  maker m = {.plot = plot, .wanted = figure, .marks = marks, .error = error};
-  m.page = (strut_figure){.least_width = figure->apart ? 0
-                                         : is_map(&m)  ? MAP_WIDTH
-                                                       : CURVES_WIDTH,
+                              const strut_table *table, bool spread, strut_error *error) {
+  maker m = {.plot = plot, .wanted = figure, .spread = spread, .error = error};
+  m.page = (strut_figure){.least_width = is_map(&m) ? MAP_WIDTH : CURVES_WIDTH,
                           .aspect = is_map(&m) ? 0.8 : 0.62,
-                          .shared_axes = !figure->apart,
-                          .one_legend = !figure->apart};
+                          .shared_axes = true,
+                          .one_legend = true};
   find_columns(&m, table);
   assert(m.y_count > 0);
-  int only = find_column(table, figure->only, &text);
-  strut_status status = strut_table_rows_choose(
-      &m.rows, only, text, find_column(table, figure->difference, NULL), &m.page.arena, error);
-  for (size_t i = 0; i < table->row_count && marks.shown && !status; i++)
-    m.rows.shown[i] = m.rows.shown[i] && marks.shown[i];
+  strut_status status = choose_rows(&m, table);
   if (!status) status = prepare(&m);
   for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
   if (!status) add_keys(&m);
   if (!status) status = strut_figure_draw(plot, &m.page, error);
   strut_arena_free(&m.page.arena);
+  strut_arena_free(&m.table.arena);
   return status;
 }

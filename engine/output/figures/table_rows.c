@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of a table that are drawn: those of a text, groups, and the difference of two sides. */
+/* Tables from tables: rows of a text, groups, and the difference of two sides. */
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,21 +19,16 @@ void strut_table_show_unit(strut_table *table, const char *name, strut_file_unit
   if (column != STRUT_NO_COLUMN) table->columns[column].shown = shown;
 }
 
-bool strut_table_belongs(const strut_table_rows *rows, int column, const char *name, size_t row) {
-  return rows->shown[row] &&
-         (column == STRUT_NO_COLUMN || strcmp(rows->table->columns[column].text[row], name) == 0);
-}
-
-strut_status strut_table_groups_find(const strut_table_rows *rows, int column, size_t most,
+strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
                                      const char *what, strut_table_groups *groups,
                                      strut_error *error) {
   groups->count = column == STRUT_NO_COLUMN;
   groups->name[0] = NULL;
-  for (size_t i = 0; i < rows->table->row_count && column != STRUT_NO_COLUMN; i++) {
-    const strut_table_column *of = &rows->table->columns[column];
+  for (size_t i = 0; i < table->row_count && column != STRUT_NO_COLUMN; i++) {
+    const strut_table_column *of = &table->columns[column];
     size_t k = 0;
     while (k < groups->count && strcmp(groups->name[k], of->text[i]) != 0) k++;
-    if (!rows->shown[i] || k < groups->count) continue;
+    if (k < groups->count) continue;
     if (groups->count == most)
       return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s", of->name, most,
                         what);
@@ -44,23 +38,69 @@ strut_status strut_table_groups_find(const strut_table_rows *rows, int column, s
   return STRUT_OK;
 }
 
+/* Keeps those rows. False: out of memory. */
+static bool keep_rows(strut_table *table, const bool *kept) {
+  size_t all = table->row_count, count = 0;
+  for (strut_table_column *c = table->columns; c < table->columns + table->column_count; c++) {
+    const char **text = strut_arena_allocate(&table->arena, all + 1, sizeof *text);
+    double *value = strut_arena_allocate(&table->arena, all + 1, sizeof *value);
+    if (!text || !value) return false;
+    count = 0;
+    for (size_t i = 0; i < all; i++) {
+      if (!kept[i]) continue;
+      if (c->text) text[count] = c->text[i];
+      if (c->value) value[count] = c->value[i];
+      count++;
+    }
+    if (c->text) c->text = text;
+    if (c->value) c->value = value;
+  }
+  table->row_count = count;
+  return true;
+}
+
+strut_status strut_table_choose(const strut_table *from, int column, const char *text,
+                                const bool *shown, strut_table *chosen, strut_error *error) {
+  size_t rows = from->row_count, left = 0;
+  strut_arena *arena = &chosen->arena;
+  bool *kept = strut_arena_allocate(arena, rows + 1, sizeof *kept);
+  chosen->columns = strut_arena_allocate(arena, from->column_count + 2, sizeof *from->columns);
+  if (!kept || !chosen->columns) return strut_no_memory(error, "while drawing");
+  chosen->row_count = rows, chosen->column_count = from->column_count;
+  memcpy(chosen->columns, from->columns, from->column_count * sizeof *from->columns);
+  for (size_t i = 0; i < rows; i++)
+    left += kept[i] = (!shown || shown[i]) && (column == STRUT_NO_COLUMN ||
+                                               strcmp(from->columns[column].text[i], text) == 0);
+  if (column != STRUT_NO_COLUMN && !left)
+    return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
+                      from->columns[column].name);
+  return left == rows || keep_rows(chosen, kept) ? STRUT_OK
+                                                 : strut_no_memory(error, "while drawing");
+}
+
 /* ---- the difference of two sides ---- */
 
 /* A row that knows where its keys are, to be sorted. */
 typedef struct keyed {
-  const strut_table_rows *rows;
+  const strut_table *table;
+  const strut_table_pairing *pairing;
   size_t row;
   int keys; /* that count */
 } keyed;
+
+/* The row of the first side, or two and a weight between them; SIZE_MAX if no row fits. */
+typedef struct partner {
+  size_t row, next;
+  double weight; /* of `next` */
+} partner;
 
 /* Numbers by value, NAN first; texts alphabetically. */
 static int compare_keys(const void *first, const void *second) {
   const keyed *one = first, *two = second;
   for (int i = 0; i < one->keys; i++) {
-    int column = one->rows->keys[i];
+    int column = one->pairing->keys[i], order;
     if (column == STRUT_NO_COLUMN) continue;
-    const strut_table_column *of = &one->rows->table->columns[column];
-    int order;
+    const strut_table_column *of = &one->table->columns[column];
     if (of->value) {
       double x = of->value[one->row], y = of->value[two->row];
       order = isnan(x) || isnan(y) ? isnan(y) - isnan(x) : (x > y) - (x < y);
@@ -79,8 +119,8 @@ static bool alongside(keyed first, keyed second) {
 }
 
 /* Among (count) sorted rows. */
-static strut_table_partner find_partner(const keyed *first, size_t count, const keyed *wanted) {
-  const strut_table_rows *rows = wanted->rows;
+static partner find_partner(const keyed *first, size_t count, const keyed *wanted) {
+  const strut_table_pairing *pairing = wanted->pairing;
   size_t low = 0, high = count;
   while (low < high) { /* the first not before `wanted` */
     size_t middle = (low + high) / 2;
@@ -88,76 +128,71 @@ static strut_table_partner find_partner(const keyed *first, size_t count, const 
     *(before ? &low : &high) = middle + before;
   }
   if (low < count && compare_keys(&first[low], wanted) == 0)
-    return (strut_table_partner){first[low].row, first[low].row, 0};
-  if (!rows->between || low == 0 || low == count || !alongside(first[low - 1], *wanted) ||
+    return (partner){first[low].row, first[low].row, 0};
+  if (!pairing->between || low == 0 || low == count || !alongside(first[low - 1], *wanted) ||
       !alongside(first[low], *wanted))
-    return (strut_table_partner){SIZE_MAX, SIZE_MAX, 0};
-  const double *x = rows->table->columns[rows->keys[STRUT_KEYS_OF_ROWS - 1]].value;
+    return (partner){SIZE_MAX, SIZE_MAX, 0};
+  const double *x = wanted->table->columns[pairing->keys[STRUT_KEYS_OF_ROWS - 1]].value;
   size_t before = first[low - 1].row, after = first[low].row;
-  return (strut_table_partner){before, after,
-                               (x[wanted->row] - x[before]) / (x[after] - x[before])};
+  return (partner){before, after, (x[wanted->row] - x[before]) / (x[after] - x[before])};
 }
 
-/* Hides the rows of the first side and finds the partners of the others. */
-static strut_status pair_sides(strut_table_rows *rows, int of, strut_arena *arena,
-                               strut_error *error) {
+/* Replaces a column's numbers of rows with partners by differences; of texts a column says where they differ. */
+static bool subtract(strut_table *table, int column, const char *name, const char *other,
+                     const partner *partners, const bool *second) {
+  strut_table_column *of = &table->columns[column];
+  double *less = strut_arena_allocate(&table->arena, table->row_count + 1, sizeof *less);
+  const char **differs = strut_arena_allocate(&table->arena, table->row_count + 1, sizeof *differs);
+  if (!less || !differs || !name || !other) return false;
+  for (size_t i = 0; i < table->row_count; i++) {
+    const partner *p = &partners[i];
+    bool alone = !second[i] || p->row == SIZE_MAX;
+    less[i] = (double)NAN;
+    if (!of->value) differs[i] = alone || strcmp(of->text[p->row], of->text[i]) != 0 ? "yes" : "";
+    if (!of->value || alone) continue;
+    less[i] = of->value[i] - of->value[p->row];
+    if (p->weight > 0) less[i] -= p->weight * (of->value[p->next] - of->value[p->row]);
+  }
+  if (of->value)
+    of->value = less, of->name = name;
+  else
+    table->columns[table->column_count++] =
+        (strut_table_column){.name = other, .unit = "", .text = differs};
+  return true;
+}
+
+strut_status strut_table_subtract(strut_table *table, int column,
+                                  const strut_table_pairing *pairing, strut_error *error) {
   strut_table_groups sides;
-  size_t count = 0, all = rows->table->row_count;
-  strut_status status = strut_table_groups_find(rows, of, 2, "sides to compare", &sides, error);
+  strut_arena *arena = &table->arena;
+  const strut_table_column *by = &table->columns[column];
+  size_t count = 0, all = table->row_count;
+  strut_status status =
+      strut_table_groups_find(table, column, 2, "sides to compare", &sides, error);
   if (status) return status;
   if (sides.count < 2)
     return strut_fail(error, STRUT_USAGE,
                       "column '%.60s' has only the text '%.60s', so there is nothing to compare",
-                      rows->table->columns[of].name, sides.name[0]);
+                      by->name, sides.name[0]);
   keyed *first = strut_arena_allocate(arena, all, sizeof *first);
-  rows->partner = strut_arena_allocate(arena, all, sizeof *rows->partner);
-  if (!first || !rows->partner) return strut_no_memory(error, "while drawing");
-  memcpy(rows->side, sides.name, sizeof rows->side);
-  for (size_t i = 0; i < all; i++) {
-    if (!strut_table_belongs(rows, of, rows->side[0], i)) continue;
-    first[count++] = (keyed){rows, i, STRUT_KEYS_OF_ROWS};
-    rows->shown[i] = false;
+  partner *partners = strut_arena_allocate(arena, all, sizeof *partners);
+  bool *second = strut_arena_allocate(arena, all, sizeof *second),
+       fine = first && partners && second;
+  for (size_t i = 0; i < all && fine; i++) {
+    second[i] = strcmp(by->text[i], sides.name[0]) != 0;
+    if (!second[i]) first[count++] = (keyed){table, pairing, i, STRUT_KEYS_OF_ROWS};
   }
-  qsort(first, count, sizeof *first, compare_keys);
-  for (size_t i = 0; i < all; i++)
-    if (rows->shown[i])
-      rows->partner[i] = find_partner(first, count, &(keyed){rows, i, STRUT_KEYS_OF_ROWS});
-  return STRUT_OK;
-}
-
-bool strut_table_compares(const strut_table_rows *rows, int column) {
-  for (size_t i = 0; i < rows->value_count && rows->partner; i++)
-    if (rows->values[i] == column) return true;
-  return false;
-}
-
-double strut_table_number(const strut_table_rows *rows, int column, size_t row) {
-  const double *value = column >= 0 ? rows->table->columns[column].value : NULL;
-  if (!value) return (double)NAN;
-  if (!strut_table_compares(rows, column)) return value[row];
-  const strut_table_partner *partner = &rows->partner[row];
-  if (partner->row == SIZE_MAX) return (double)NAN;
-  double less = value[row] - value[partner->row];
-  if (partner->weight > 0) less -= partner->weight * (value[partner->next] - value[partner->row]);
-  return less;
-}
-
-bool strut_table_differs(const strut_table_rows *rows, int column, size_t row) {
-  const char *const *text = rows->table->columns[column].text;
-  size_t other = rows->partner[row].row;
-  return other == SIZE_MAX || strcmp(text[other], text[row]) != 0;
-}
-
-strut_status strut_table_rows_choose(strut_table_rows *rows, int only, const char *text,
-                                     int difference, strut_arena *arena, strut_error *error) {
-  size_t count = rows->table->row_count, shown = only == STRUT_NO_COLUMN;
-  rows->shown = strut_arena_allocate(arena, count + 1, 1);
-  if (!rows->shown) return strut_no_memory(error, "while drawing");
-  memset(rows->shown, true, count);
-  for (size_t i = 0; i < count; i++)
-    shown += rows->shown[i] = strut_table_belongs(rows, only, text, i);
-  if (!shown)
-    return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
-                      rows->table->columns[only].name);
-  return difference == STRUT_NO_COLUMN ? STRUT_OK : pair_sides(rows, difference, arena, error);
+  if (fine) qsort(first, count, sizeof *first, compare_keys);
+  for (size_t i = 0; i < all && fine; i++)
+    if (second[i])
+      partners[i] = find_partner(first, count, &(keyed){table, pairing, i, STRUT_KEYS_OF_ROWS});
+  const char *other = strut_arena_format(arena, "%s: other", sides.name[0]);
+  for (size_t k = 0; k < pairing->value_count && fine; k++) {
+    int value = pairing->values[k];
+    const char *name = strut_arena_format(arena, "%s, %s%s%s less %s", table->columns[value].name,
+                                          by->value ? by->name : "", by->value ? " " : "",
+                                          sides.name[1], sides.name[0]);
+    fine = subtract(table, value, name, other, partners, second);
+  }
+  return fine && keep_rows(table, second) ? STRUT_OK : strut_no_memory(error, "while drawing");
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figures of a study's table or of its recorded runs. */
+/* Figures of a study's table, of its recorded runs, and of branches of motions. */
 #include <gsl/gsl_interp.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,6 +8,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/table_figure.h"
 #include "engine/study/compare/compare.h"
+#include "engine/study/follow/follow_study.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/sweep/sweep.h"
 
@@ -36,20 +37,73 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
   strut_status status = strut_study_motion(plan, directory, figure, &motion, error);
   strut_sweep_show_units(plan, &motion);
   const strut_plot plot = plot_of(figure, path);
-  if (!status) status = strut_table_draw(&plot, figure, &motion, (strut_table_marks){0}, error);
+  if (!status) status = strut_table_draw(&plot, figure, &motion, false, error);
   strut_arena_free(&motion.arena);
   return status;
 }
 
+/* ---- branches: stable motions solid, unstable ones dashed, special points marked ---- */
+
+static int column_of(const strut_table *table, const char *name) {
+  return strut_table_column_of(table, name, strlen(name));
+}
+
+/* Events that change nothing, and starts, are in the table alone. */
+static bool is_marked(const char *point, const char *changes) {
+  bool marked = *point && strcmp(changes, "yes") == 0;
+  for (int kind = STRUT_FOLLOW_CUSP; kind <= STRUT_FOLLOW_TORUS; kind++)
+    marked = marked || strcmp(point, strut_follow_kind_word((strut_follow_kind)kind)) == 0;
+  return marked;
+}
+
+strut_status strut_follow_figure(const strut_plot *plot, const char *title, size_t axes,
+                                 strut_table *table, strut_error *error) {
+  const bool curves = column_of(table, "curve") >= 0;
+  const int over = column_of(table, "arclength") + 1, point = column_of(table, "point");
+  const int changes = column_of(table, "changes_stability"), wide = column_of(table, "amplitude");
+  const char **mark = strut_arena_allocate(&table->arena, table->row_count + 1, sizeof *mark);
+  if (over == 0 || point < 0 || wide < 0)
+    return strut_fail(error, STRUT_FILE_TROUBLE, "the table of branches lacks a column");
+  if (!mark) return strut_no_memory(error, "while drawing");
+  const strut_table_column *columns = table->columns;
+  const char *const *text = columns[point].text;
+  for (size_t i = 0; i < table->row_count; i++)
+    mark[i] = is_marked(text[i], changes < 0 ? "" : columns[changes].text[i]) ? text[i] : "";
+  table->columns[point].text = mark;
+  const char *groups[] = {curves ? "kind" : columns[axes ? axes - 1 : 0].name,
+                          axes > 1 ? columns[axes - 2].name : NULL};
+  strut_table_groups found;
+  for (int k = 0; k < 2; k++) /* too many have neither colours nor panels */
+    if (groups[k] && strut_table_groups_find(table, column_of(table, groups[k]),
+                                             STRUT_MOST_TABLE_GROUPS, "", &found, NULL))
+      groups[k] = NULL;
+  strut_plot titled = *plot;
+  if (!plot->title) titled.title = title;
+  const strut_study_figure figure = {
+      .x = columns[over].name,
+      .y = columns[curves                ? over + 1
+                   : columns[wide].value ? wide
+                                         : column_of(table, "velocity")]
+               .name,
+      .series = groups[0],
+      .panels = groups[1],
+      .line = curves ? "curve" : "branch",
+      .stable = "stable",
+      .mark = "point",
+      .thing = curves ? NULL : "node"};
+  return strut_table_draw(&titled, &figure, table, false, error);
+}
+
 /* ---- a search: its best objective over evaluations, its points over two variables ---- */
 
-static const char BEST[] = "best so far"; /* a column */
+static const char BEST[] = "best so far", RINGED[] = "ringed"; /* columns */
 
 /* Rows of a search's table, by number of the point. */
 typedef struct searched_rows {
   const strut_table *table;
   double *best; /* (rows) the best objective so far */
-  bool *shown, *marked;
+  bool *shown;
+  const char **ringed; /* "" but of marked ones */
 } searched_rows;
 
 static size_t row_of(const searched_rows *rows, int64_t point) {
@@ -59,7 +113,8 @@ static size_t row_of(const searched_rows *rows, int64_t point) {
 
 /* Shows the worst scenario of each evaluation; marks the best of each search, or the front of two goals. */
 static void find_rows(searched_rows *rows, const strut_search_result *result) {
-  for (size_t i = 0; i < rows->table->row_count; i++) rows->best[i] = (double)NAN;
+  for (size_t i = 0; i < rows->table->row_count; i++)
+    rows->best[i] = (double)NAN, rows->ringed[i] = "";
   for (size_t i = 0; i < result->outcome_count; i++) {
     const strut_search_outcome *outcome = &result->outcomes[i];
     for (int64_t k = 0; k < outcome->evaluations; k++) {
@@ -68,23 +123,22 @@ static void find_rows(searched_rows *rows, const strut_search_result *result) {
       rows->shown[row] = true;
     }
     if (outcome->best.evaluation >= 0 && outcome->best.violation <= 0.0 && !result->front_count)
-      rows->marked[row_of(rows, outcome->best.worst)] = true;
+      rows->ringed[row_of(rows, outcome->best.worst)] = "yes";
   }
   for (size_t i = 0; i < result->front_count; i++)
     for (size_t k = 0; k < result->fronts[i].count; k++)
-      rows->marked[row_of(rows, result->fronts[i].points[k].worst)] = true;
+      rows->ringed[row_of(rows, result->fronts[i].points[k].worst)] = "yes";
 }
 
-/* The table with a further column. */
-static strut_status extend(const strut_table *from, strut_table_column column, strut_table *to,
-                           strut_error *error) {
-  to->row_count = from->row_count;
-  to->column_count = from->column_count + 1;
-  to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
-  if (!to->columns) return strut_no_memory(error, "while drawing");
-  memcpy(to->columns, from->columns, from->column_count * sizeof *to->columns);
-  to->columns[from->column_count] = column;
-  return STRUT_OK;
+/* Draws those rows of a table, which is freed. */
+static strut_status draw_shown(const strut_plot *plot, const strut_study_figure *figure,
+                               strut_table *table, const bool *shown, strut_error *error) {
+  strut_table chosen = {0};
+  strut_status status = strut_table_choose(table, STRUT_NO_COLUMN, NULL, shown, &chosen, error);
+  if (!status) status = strut_table_draw(plot, figure, &chosen, false, error);
+  strut_arena_free(&chosen.arena);
+  strut_arena_free(&table->arena);
+  return status;
 }
 
 static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_figure *f,
@@ -98,26 +152,25 @@ static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_
   searched_rows rows = {.table = table,
                         .best = strut_arena_allocate(&own.arena, count, sizeof *rows.best),
                         .shown = strut_arena_allocate(&own.arena, count, sizeof *rows.shown),
-                        .marked = strut_arena_allocate(&own.arena, count, sizeof *rows.marked)};
+                        .ringed = strut_arena_allocate(&own.arena, count, sizeof *rows.ringed)};
   const char *unit = search->goal.program.unit;
-  const strut_table_column best = {
-      .name = BEST, .unit = strcmp(unit, "1") == 0 ? "" : unit, .value = rows.best};
-  strut_status status = rows.best && rows.shown && rows.marked
-                            ? extend(table, best, &own, error)
+  strut_status status = rows.best && rows.shown && rows.ringed
+                            ? strut_table_choose(table, STRUT_NO_COLUMN, NULL, NULL, &own, error)
                             : strut_no_memory(error, "while drawing");
+  if (status) return strut_arena_free(&own.arena), status;
+  own.columns[own.column_count++] = (strut_table_column){
+      .name = BEST, .unit = strcmp(unit, "1") == 0 ? "" : unit, .value = rows.best};
+  own.columns[own.column_count++] =
+      (strut_table_column){.name = RINGED, .unit = "", .text = rows.ringed};
+  find_rows(&rows, result);
   if (!figure.color) figure.color = "objective";
+  if (f->kind == STRUT_FIGURE_POINTS) figure.mark = RINGED;
   if (f->kind == STRUT_FIGURE_BEST) {
     figure.x = "evaluation", figure.y = BEST;
     if (!figure.series && search->starts > 1) figure.series = "search";
     if (!plot.y.label) plot.y.label = search->goal.text;
   }
-  if (!status) find_rows(&rows, result);
-  if (!status)
-    status =
-        strut_table_draw(&plot, &figure, &own,
-                         (strut_table_marks){.shown = rows.shown, .marked = rows.marked}, error);
-  strut_arena_free(&own.arena);
-  return status;
+  return draw_shown(&plot, &figure, &own, rows.shown, error);
 }
 
 strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *directory,
@@ -136,8 +189,7 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
   else if (strut_figure_of_runs(figure))
     status = strut_study_pictures(plan, directory, figure, error);
   else
-    status = strut_table_draw(&plot, figure, table,
-                              (strut_table_marks){.spread = plan->study->refine.depth > 0}, error);
+    status = strut_table_draw(&plot, figure, table, plan->study->refine.depth > 0, error);
   strut_arena_free(&arena);
   return status;
 }
@@ -174,12 +226,13 @@ strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study 
   bool one = points == 1, numbers = one || !axes[last - 1].columns[0].word;
   bool *shown = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *shown);
   const char **who = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *who);
-  const strut_table_column column = {.name = "", .unit = "", .text = who};
-  strut_status status =
-      shown && who ? extend(table, column, &own, error) : strut_no_memory(error, "while drawing");
+  strut_status status = shown && who
+                            ? strut_table_choose(table, STRUT_NO_COLUMN, NULL, NULL, &own, error)
+                            : strut_no_memory(error, "while drawing");
   *drawn = !status && numbers && choose_indices(table, of, one, shown, who);
   if (*drawn) {
     strut_plot limited = *plot;
+    own.columns[own.column_count++] = (strut_table_column){.name = "", .unit = "", .text = who};
     const strut_study_figure figure = {.x = one ? "parameter" : own.columns[over].name,
                                        .y = "value",
                                        .series = one ? "measure" : "",
@@ -190,7 +243,7 @@ strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study 
                                        .labels = labels};
     own.columns[of].name = figure.panels;
     limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2, false};
-    status = strut_table_draw(&limited, &figure, &own, (strut_table_marks){.shown = shown}, error);
+    return draw_shown(&limited, &figure, &own, shown, error);
   }
   strut_arena_free(&own.arena);
   return status;
