@@ -73,6 +73,25 @@ static strut_status check_varied(const strut_arguments *arguments, const strut_o
                            varied->name, value);
 }
 
+/* Are all that vary parameters of the model? */
+static strut_status check_names(const strut_arguments *arguments) {
+  strut_setup setup;
+  strut_arguments quiet = *arguments;
+  quiet.no_notes = true;
+  strut_status status = strut_open_model(&quiet, STRUT_OPEN_FOR_ANY, &setup, NULL);
+  if (status) return status;
+  const strut_named_rows *names = STRUT_NAMED(setup.scene.parameters, setup.scene.parameter_count);
+  for (size_t i = 0; i < arguments->varied_count && !status; i++) {
+    const char *name = arguments->varied[i].name;
+    if (strut_parameter_named(&setup.scene, name)) continue;
+    strut_usage_error(arguments, "--vary %s: the model has no such parameter%s", name,
+                      strut_near_to(name, strut_row_name, names).text);
+    status = STRUT_BAD_SCENE;
+  }
+  strut_setup_free(&setup);
+  return status;
+}
+
 static strut_status open_point(const strut_arguments *arguments, uint64_t *seed, size_t number,
                                strut_setup *setup) {
   size_t varied = arguments->varied_count, set = arguments->override_count;
@@ -111,6 +130,8 @@ static strut_status open_points(const strut_arguments *arguments, tradeoff_study
     status = check_varied(arguments, &arguments->varied[i]);
   if (status == STRUT_OK && count > 1 && strcmp(arguments->model, "-") == 0)
     status = strut_usage_error(arguments, "operating points need a model file, not standard input");
+  if (status == STRUT_OK && arguments->varied_count && strcmp(arguments->model, "-") != 0)
+    status = check_names(arguments);
   if (status != STRUT_OK) return status;
   study->setups = strut_arena_allocate(&study->arena, count, sizeof *study->setups);
   study->list = strut_arena_allocate(&study->arena, count, sizeof *study->list);
