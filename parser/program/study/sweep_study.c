@@ -261,7 +261,7 @@ static strut_status check_copy(const char *directory, const copy *self, strut_ar
   if (stat(path, &found) != 0 || same_file(path, self->source) || holds_text(path, self->text))
     return STRUT_OK;
   if (!lies_in(directory, self->study, arena) && !lies_in(directory, self->model, arena))
-    return strut_ownership_check_path(path, error);
+    return strut_ownership_check(directory, (const char *const[]){self->name, NULL}, error);
   return strut_fail(
       error, STRUT_USAGE,
       "'%s' is the folder of the study or its model, and the copy of '%s' that is kept "
