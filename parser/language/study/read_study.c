@@ -290,7 +290,7 @@ static void read_rest(strut_study_reader *reader, strut_fields *top) {
 
 /* Reads what refers to the model's parameters: set, derive and axes. */
 static void read_points(strut_study_reader *reader, strut_fields *top,
-                        const strut_override *overrides, size_t count) {
+                        const strut_setting *overrides, size_t count) {
   strut_study_file *file = reader->file;
   const strut_slot *set = strut_slot_of(top, STRUT_KEY_STUDY_SET);
   const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
@@ -298,9 +298,8 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   file->settings =
       strut_study_allocate(reader, count + reader->declared_count, sizeof *file->settings);
   if (!file->settings) return;
-  for (size_t i = 0; i < count; i++)
-    file->settings[file->setting_count++] =
-        (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
+  for (; file->setting_count < count; file->setting_count++)
+    file->settings[file->setting_count] = overrides[file->setting_count];
   read_settings(reader, set, count, true);
   read_settings(reader, derive, count, false);
   const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
@@ -335,7 +334,7 @@ static bool is_model(const strut_tree *root) {
          !strut_tree_find(root, "study", NULL) && !strut_tree_find(root, "model", NULL);
 }
 
-static strut_status read_all(strut_study_reader *study_reader, const strut_override *overrides,
+static strut_status read_all(strut_study_reader *study_reader, const strut_setting *overrides,
                              size_t count, strut_error *error) {
   strut_study_file *file = study_reader->file;
   strut_reader *reader = study_reader->reader;
@@ -369,7 +368,7 @@ static strut_status read_all(strut_study_reader *study_reader, const strut_overr
   return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;
 }
 
-strut_status strut_study_open(const char *path, const strut_override *overrides, size_t count,
+strut_status strut_study_open(const char *path, const strut_setting *overrides, size_t count,
                               strut_study_file *file, strut_error *error) {
   *file = (strut_study_file){.path = path};
   strut_status status = strut_file_read(path, &file->text, &file->length, error);

@@ -100,9 +100,9 @@ const char *const *strut_sweep_words(const strut_arguments *arguments, strut_are
   const char **words =
       strut_arena_allocate(arena, 2 * (arguments->override_count + options) + 1, sizeof *words);
   for (size_t i = 0; words && i < arguments->override_count; i++) {
-    const strut_override *override = &arguments->overrides[i];
+    const strut_setting *override = &arguments->overrides[i];
     words[n++] = "--set";
-    words[n++] = strut_arena_format(arena, "%s=%s", override->name, override->value);
+    words[n++] = strut_arena_format(arena, "%s=%s", override->name, override->text);
     if (!words[n - 1]) return NULL;
   }
   for (size_t i = 0; words && i < options; i++) {
