@@ -68,142 +68,76 @@ static bool is_still(int descriptor, const char *name) {
          mine.st_ino == there.st_ino;
 }
 
-static bool is_file(int descriptor) {
-  struct stat found;
-  return fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode);
-}
-
-/* Opens what a killed process left under a name: it holds no lock any more. */
-static int take_over(const char *name) {
-  int descriptor = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return -1;
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && is_file(descriptor) &&
-      is_still(descriptor, name) && ftruncate(descriptor, 0) == 0)
-    return descriptor;
-  close(descriptor);
-  return -1;
-}
-
-/* A new file, with a lock where the file system has them; -1 with EEXIST where somebody was quicker. */
-static int create_new(const char *name) {
-  int descriptor = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) return -1;
-  bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
-  /* before the lock, another process may have taken it over, and even given it its name */
-  if (locked ? is_still(descriptor, name) : errno != EWOULDBLOCK) return descriptor;
-  close(descriptor);
-  errno = EEXIST;
-  return -1;
-}
-
-/*
- * Opens a new file beside `path` under a temporary name, which it writes into `part`; -1 with errno where that
- * fails. The name is PATH.strut-N with the first N that no process is writing: what a process left that was
- * killed is written over.
- */
-static int create_beside(const char *path, char *part, size_t capacity) {
-  int descriptor = -1, code = EEXIST;
-  for (int i = 0; i < MOST_NAMES && descriptor < 0 && code == EEXIST; i++) {
-    snprintf(part, capacity, "%s.strut-%d", path, i);
-    descriptor = create_new(part);
-    code = errno;
-    if (descriptor < 0 && code == EEXIST) descriptor = take_over(part);
-  }
-  errno = code;
-  return descriptor;
-}
-
 static void forget(strut_file *file) {
+  strut_stage_remove(&file->held);
   strut_release(file->path);
   strut_release(file->part);
   *file = (strut_file){0};
 }
 
-/* Opens file->path for writing; it is an owned text, or NULL if memory was out. */
-static strut_status open_beside(strut_file *file, strut_error *error) {
-  size_t capacity = file->path ? strlen(file->path) + NUMBER_ROOM : 1;
-  file->part = strut_allocate(capacity, 1);
-  if (!file->path || !file->part) {
-    forget(file);
-    return strut_no_memory(error, "while writing files");
-  }
+/* Is it a folder of strut_stage? Its files move with it. */
+static bool is_stage(const char *folder) {
+  const char *slash = strrchr(folder, '/');
+  return strncmp(slash ? slash + 1 : folder, STRUT_STAGE_PREFIX, strlen(STRUT_STAGE_PREFIX)) == 0;
+}
+
+/* Opens file->part, the file of that name in the folder or in a stage inside it. 0 or an errno. */
+static int open_part(strut_file *file, const char *folder, const char *name, size_t capacity) {
+  bool staged = is_stage(folder);
+  int code = staged ? 0 : strut_stage_create(&file->held, folder);
+  if (code) return code;
+  snprintf(file->part, capacity, "%s/%s", staged ? folder : file->held.path, name);
+  file->stream = fopen(file->part, "wbe");
+  return file->stream ? 0 : errno;
+}
+
+strut_status strut_file_open_path(strut_file *file, const char *path, strut_error *error) {
+  const char *names[2] = {NULL, NULL};
+  size_t length = strlen(path) + 1, capacity = length + 2 * NUMBER_ROOM;
+  char *folder = strut_file_folder(path, &names[0]);
+  *file = (strut_file){.path = strut_allocate(length, 1), .part = strut_allocate(capacity, 1)};
+  int code = !folder || !file->path || !file->part ? ENOMEM : is_directory(path) ? EISDIR : 0;
   strut_status status = STRUT_OK;
-  int descriptor = -1, code = EISDIR;
-  bool folder = is_directory(file->path);
-  if (!folder) status = strut_ownership_check_path(file->path, error);
-  if (status != STRUT_OK) {
-    forget(file);
-    return status;
+  if (!code && !is_stage(folder)) status = strut_ownership_check(folder, names, error);
+  if (!code && !status) {
+    memcpy(file->path, path, length);
+    code = open_part(file, folder, names[0], capacity);
   }
-  if (!folder) {
-    descriptor = create_beside(file->path, file->part, capacity);
-    code = errno;
-  }
-  if (descriptor >= 0) {
-    file->stream = fdopen(descriptor, "wb");
-    code = errno;
-    if (!file->stream) {
-      close(descriptor);
-      unlink(file->part);
-    }
-  }
-  if (file->stream) return STRUT_OK;
-  status = strut_file_fail(error, "write", file->path, NULL, code);
-  forget(file);
+  if (code) status = strut_file_fail(error, "write", path, NULL, code);
+  if (status) forget(file);
+  strut_release(folder);
   return status;
 }
 
 strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
                              strut_error *error) {
   size_t capacity = strlen(directory) + strlen(name) + 2;
-  *file = (strut_file){.path = strut_allocate(capacity, 1)};
-  if (file->path) snprintf(file->path, capacity, "%s/%s", directory, name);
-  return open_beside(file, error);
-}
-
-strut_status strut_file_open_path(strut_file *file, const char *path, strut_error *error) {
-  size_t capacity = strlen(path) + 1;
-  *file = (strut_file){.path = strut_allocate(capacity, 1)};
-  if (file->path) memcpy(file->path, path, capacity);
-  return open_beside(file, error);
-}
-
-/* Makes a rename durable. Some file systems cannot synchronise a directory, which is not an error. */
-static int synchronise_parent(const char *path) {
-  const char *name;
-  char *parent = strut_file_folder(path, &name);
-  if (!parent) return ENOMEM;
-  int code = 0, descriptor = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor >= 0) {
-    if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
-      code = errno;
-    close(descriptor);
-  }
-  strut_release(parent);
-  return code;
+  char *path = strut_allocate(capacity, 1);
+  *file = (strut_file){0};
+  if (!path) return strut_no_memory(error, "while writing files");
+  snprintf(path, capacity, "%s/%s", directory, name);
+  strut_status status = strut_file_open_path(file, path, error);
+  strut_release(path);
+  return status;
 }
 
 strut_status strut_file_commit(strut_file *file, strut_error *error) {
-  int code = 0;
+  const char *names[2] = {NULL, NULL};
+  char *folder = strut_file_folder(file->path, &names[0]);
+  strut_status status = STRUT_OK;
   bool failed_before = ferror(file->stream) != 0;
+  int code = folder ? 0 : ENOMEM;
   errno = 0;
   if (fflush(file->stream) != 0 || failed_before) code = errno ? errno : EIO;
   if (!code && fsync(fileno(file->stream)) != 0 && errno != EINVAL) code = errno;
-  int lock = dup(fileno(file->stream)); /* until it has its name, no process may take it over */
+  if (!code && !is_still(fileno(file->stream), file->part)) code = ENOENT;
   if (fclose(file->stream) != 0 && !code) code = errno;
-  file->stream = NULL;
-  bool renamed = false;
-  strut_status status = code ? STRUT_OK : strut_ownership_claim_path(file->path, file->part, error);
-  if (!code && status == STRUT_OK) {
-    renamed = rename(file->part, file->path) == 0;
-    code = renamed ? synchronise_parent(file->path) : errno;
-  }
-  if (status != STRUT_OK) unlink(file->part);
-  if (code) {
-    unlink(renamed ? file->path : file->part);
+  if (code)
     status = strut_file_fail(error, "write", file->path, NULL, code);
-  }
-  if (lock >= 0) close(lock);
+  else if (file->held.path)
+    status = strut_stage_move(file->held.path, folder, names, error);
+  if (status) unlink(file->part);
+  strut_release(folder);
   forget(file);
   return status;
 }
@@ -365,27 +299,28 @@ static bool hold(strut_stage *stage) {
   bool held = flock(stage->lock, LOCK_EX) != 0 || write_mark(stage->lock);
   if (held && is_still(stage->lock, stage->path)) return true;
   int code = held ? ENOENT : errno;
+  if (!held) empty(stage->lock); /* of a mark that was begun */
   close(stage->lock);
   if (!held && code != ENOENT) rmdir(stage->path);
   errno = code;
   return false;
 }
 
-strut_status strut_stage_create(strut_stage *stage, const char *directory, strut_error *error) {
+int strut_stage_create(strut_stage *stage, const char *directory) {
   size_t capacity = strlen(directory) + NUMBER_ROOM;
   *stage = (strut_stage){.path = strut_allocate(capacity, 1)};
-  if (!stage->path) return strut_no_memory(error, "while writing files");
+  if (!stage->path) return ENOMEM;
   strut_stage_sweep(directory);
   int code = EEXIST;
   for (int i = 0; i < MOST_NAMES && (code == EEXIST || code == ENOENT); i++) {
     snprintf(stage->path, capacity, "%s/" STRUT_STAGE_PREFIX "%ld-%d", directory, (long)getpid(),
              i);
-    if (mkdir(stage->path, 0777) == 0 && hold(stage)) return STRUT_OK;
+    if (mkdir(stage->path, 0777) == 0 && hold(stage)) return 0;
     code = errno;
   }
   strut_release(stage->path);
   *stage = (strut_stage){.path = NULL};
-  return strut_file_fail(error, "write", directory, NULL, code);
+  return code ? code : EIO;
 }
 
 void strut_stage_remove(strut_stage *stage) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Files that appear whole or not at all: written beside, synchronised, renamed. */
+/** Files that appear whole or not at all: written in a folder of their own, synchronised, moved. */
 #pragma once
 
 #include <stdbool.h>
@@ -8,20 +8,44 @@
 
 #include "engine/base/status.h"
 
+/*
+ * Folders in which results are gathered before they move to where they belong.
+ *
+ * A process that is killed cannot remove its own. Whoever writes into the same place later does: each
+ * such folder names its machine in a file and is locked for as long as its process lives, so that one
+ * without a lock, of this machine, is abandoned. All others stay.
+ */
+
+/** Prefix of their names. */
+#define STRUT_STAGE_PREFIX ".strut-stage-"
+
+typedef struct strut_stage {
+  char *path; /* of the folder, or NULL */
+  int lock;   /* its descriptor, which holds the lock */
+} strut_stage;
+
+/** Creates one inside the directory, after removing those of killed processes. 0 or an errno. */
+STRUT_API int strut_stage_create(strut_stage *stage, const char *directory);
+/** Removes it with its contents. A zeroed struct is allowed. */
+STRUT_API void strut_stage_remove(strut_stage *stage);
+/** Removes the folders that killed processes left in the directory; true if there were any. */
+STRUT_API bool strut_stage_sweep(const char *directory);
+
 /** A file being written. Zero-initialise. */
 typedef struct strut_file {
   FILE *stream;      /* write here; its error flag is checked on commit */
   char *path, *part; /* the final name, and the name while it is written */
+  strut_stage held;  /* the folder of the part; none where the file is one of a stage */
 } strut_file;
 
 /** Creates a directory and what is missing above it, as mkdir -p. */
 STRUT_API strut_status strut_directory_create(const char *directory, strut_error *error);
-/** Opens directory/name for writing under a temporary name beside it. */
+/** Opens directory/name for writing; the directory exists. */
 STRUT_API strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
                                        strut_error *error);
-/** As strut_file_open, for a path whose folder exists. */
+/** As strut_file_open, for a path. */
 STRUT_API strut_status strut_file_open_path(strut_file *file, const char *path, strut_error *error);
-/** Flushes, synchronises and renames; on failure nothing of it is left. */
+/** Flushes, synchronises and moves; on failure nothing of it is left. */
 STRUT_API strut_status strut_file_commit(strut_file *file, strut_error *error);
 /** Closes and removes what was written. Does nothing on a committed or zeroed file. */
 STRUT_API void strut_file_abandon(strut_file *file);
@@ -43,27 +67,3 @@ STRUT_API strut_status strut_file_write_block(const char *directory, const char 
 /** As strut_file_write_text, for a path. */
 STRUT_API strut_status strut_file_write_path(const char *path, const char *text,
                                              strut_error *error);
-
-/*
- * Folders in which results are gathered before they move to where they belong.
- *
- * A process that is killed cannot remove its own. Whoever writes into the same place later does: each
- * such folder names its machine in a file and is locked for as long as its process lives, so that one
- * without a lock, of this machine, is abandoned. All others stay.
- */
-
-/** Prefix of their names. */
-#define STRUT_STAGE_PREFIX ".strut-stage-"
-
-typedef struct strut_stage {
-  char *path; /* of the folder, or NULL */
-  int lock;   /* its descriptor, which holds the lock */
-} strut_stage;
-
-/** Creates one inside the directory, after removing those of killed processes. */
-STRUT_API strut_status strut_stage_create(strut_stage *stage, const char *directory,
-                                          strut_error *error);
-/** Removes it with its contents. A zeroed struct is allowed. */
-STRUT_API void strut_stage_remove(strut_stage *stage);
-/** Removes the folders that killed processes left in the directory; true if there were any. */
-STRUT_API bool strut_stage_sweep(const char *directory);

@@ -37,33 +37,15 @@ strut_status strut_results_begin_named(strut_results *results, const char *direc
   }
   memcpy(results->directory, directory, strlen(directory));
   status = strut_ownership_check(directory, names, error);
-  if (status == STRUT_OK) status = strut_stage_create(&results->held, directory, error);
+  int code = status == STRUT_OK ? strut_stage_create(&results->held, directory) : 0;
+  if (code) status = strut_file_fail(error, "write", directory, NULL, code);
   results->stage = results->held.path;
   if (status != STRUT_OK) strut_results_abandon(results);
   return status;
 }
 
-/* Moves all files, or removes those of an earlier run that this one does not have. 0 or an errno. */
-static int move_all(const strut_results *results) {
-  int from = open(results->stage, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  int to = open(results->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  int code = from < 0 || to < 0 ? errno : 0;
-  for (const char *const *name = results->names; *name && !code; name++) {
-    if (renameat(from, *name, to, *name) != 0) code = errno;
-    if (code == ENOENT) code = unlinkat(to, *name, 0) == 0 || errno == ENOENT ? 0 : errno;
-  }
-  if (!code && fsync(to) != 0 && errno == EIO) code = EIO;
-  if (from >= 0) close(from);
-  if (to >= 0) close(to);
-  return code;
-}
-
 strut_status strut_results_commit(strut_results *results, strut_error *error) {
-  strut_status status = strut_ownership_check(results->directory, results->names, error);
-  if (status == STRUT_OK)
-    status = strut_ownership_claim(results->directory, results->stage, results->names, error);
-  int code = status == STRUT_OK ? move_all(results) : 0;
-  if (code) status = strut_file_fail(error, "write", results->directory, NULL, code);
+  strut_status status = strut_stage_move(results->stage, results->directory, results->names, error);
   if (status == STRUT_OK) results->made = false;
   strut_results_abandon(results);
   return status;
@@ -218,61 +200,38 @@ static int append(int folder, const char *name, uint64_t size, uint64_t sum) {
   return code;
 }
 
-/* Lists directory/name, whose bytes are those of from/source. */
-static int claim_one(int folder, list *self, int from, const char *source, const char *name) {
+/* Lists the file of the name. 0 or an errno. */
+static int claim(int folder, list *self, int from, const char *name) {
   uint64_t size, sum;
-  int code = measure(from, source, &size, &sum);
+  int code = measure(from, name, &size, &sum);
   if (code == ENOENT) return 0; /* not written this time */
   return code || is_listed(self, name, size, sum) ? code : append(folder, name, size, sum);
 }
 
-/* Files `sources` of the directory `stage` as files `names` of `directory`. */
-static strut_status claim(const char *directory, const char *stage, const char *const *sources,
-                          const char *const *names, strut_error *error) {
+/* Moves the file, or removes that of an earlier run that this one does not have. 0 or an errno. */
+static int move(int from, int to, const char *name) {
+  if (renameat(from, name, to, name) == 0) return 0;
+  return errno != ENOENT || (unlinkat(to, name, 0) != 0 && errno != ENOENT) ? errno : 0;
+}
+
+strut_status strut_stage_move(const char *stage, const char *directory, const char *const *names,
+                              strut_error *error) {
   list l = {.text = NULL};
-  int folder = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  strut_status status = strut_ownership_check(directory, names, error);
+  if (status != STRUT_OK) return status;
   int from = open(stage, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  bool usable = folder >= 0 && from >= 0;
-  strut_status status = usable ? read_list(folder, &l, error) : STRUT_OK;
-  for (int i = 0; usable && names[i] && status == STRUT_OK; i++) {
-    int code = claim_one(folder, &l, from, sources[i], names[i]);
-    if (code) status = strut_file_fail(error, "write", directory, names[i], code);
-  }
+  int to = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const char *at = NULL;
+  int code = from < 0 || to < 0 ? errno : 0;
+  if (!code && read_list(to, &l, NULL) != STRUT_OK) code = ENOMEM;
+  for (int i = 0; names[i] && !code; i++) code = claim(to, &l, from, at = names[i]);
+  for (int i = 0; names[i] && !code; i++) code = move(from, to, at = names[i]);
+  if (!code && fsync(to) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
+    at = NULL, code = errno;
   strut_release(l.text);
   if (from >= 0) close(from);
-  if (folder >= 0) close(folder);
-  return status;
-}
-
-strut_status strut_ownership_claim(const char *directory, const char *stage,
-                                   const char *const *names, strut_error *error) {
-  return claim(directory, stage, names, names, error);
-}
-
-/* Is it a staging folder? Ownership is checked when its files are moved. */
-static bool is_stage(const char *folder) {
-  const char *slash = strrchr(folder, '/');
-  return strncmp(slash ? slash + 1 : folder, STRUT_STAGE_PREFIX, strlen(STRUT_STAGE_PREFIX)) == 0;
-}
-
-strut_status strut_ownership_check_path(const char *path, strut_error *error) {
-  const char *names[2] = {NULL, NULL};
-  char *folder = strut_file_folder(path, &names[0]);
-  if (!folder) return strut_no_memory(error, "while writing files");
-  strut_status status = is_stage(folder) ? STRUT_OK : strut_ownership_check(folder, names, error);
-  strut_release(folder);
-  return status;
-}
-
-strut_status strut_ownership_claim_path(const char *path, const char *part, strut_error *error) {
-  const char *names[2] = {NULL, NULL}, *sources[2] = {NULL, NULL};
-  char *folder = strut_file_folder(path, &names[0]);
-  if (!folder) return strut_no_memory(error, "while writing files");
-  const char *slash = strrchr(part, '/'); /* beside it */
-  sources[0] = slash ? slash + 1 : part;
-  strut_status status = is_stage(folder) ? STRUT_OK : claim(folder, folder, sources, names, error);
-  strut_release(folder);
-  return status;
+  if (to >= 0) close(to);
+  return code ? strut_file_fail(error, "write", directory, at, code) : STRUT_OK;
 }
 
 /* ---- measured data ---- */

@@ -51,16 +51,12 @@ STRUT_API void strut_results_abandon(strut_results *results);
 STRUT_API strut_status strut_ownership_check(const char *directory, const char *const *names,
                                              strut_error *error);
 /**
- * Lists the files of `stage` that have one of the names as strut's own in `directory`, where they will
- * be moved. Where the list cannot be written to, as in a folder of several users, the files are simply
- * not listed: strut will not overwrite them later.
+ * Moves the files of a stage to its directory after that check, and removes what the stage has not of the
+ * names. They are listed first; where the list cannot be written to, as in a folder of several users, they
+ * are simply not listed: strut will not overwrite them later.
  */
-STRUT_API strut_status strut_ownership_claim(const char *directory, const char *stage,
-                                             const char *const *names, strut_error *error);
-/** The same two for a path; the claimed bytes are those of the file `part`. */
-STRUT_API strut_status strut_ownership_check_path(const char *path, strut_error *error);
-STRUT_API strut_status strut_ownership_claim_path(const char *path, const char *part,
-                                                  strut_error *error);
+STRUT_API strut_status strut_stage_move(const char *stage, const char *directory,
+                                        const char *const *names, strut_error *error);
 
 /**
  * Copies the files of measured data to where a scene in the directory names them. STRUT_USAGE where one is

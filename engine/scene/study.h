@@ -399,6 +399,7 @@ typedef struct strut_study_figure {
   const char **labels;             /* (label_count) of the curves */
   const char *x_label, *y_label;   /* or NULL: the columns' names */
   double x_limits[2], y_limits[2]; /* in the columns' units; 0, 0: from the data */
+  const char *limit_units[2];      /* that these were given in, or NULL */
   strut_study_colours colours;     /* of a MAP */
   double from, to;                 /* of MOTION [s]; without limits infinite */
   double scale[2];                 /* of PERIOD; 0: 1 */

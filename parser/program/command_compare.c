@@ -31,7 +31,7 @@ typedef struct model_source {
   const char *path, *shown;
   char *text;
   size_t length;
-  strut_override *known; /* (known_count) of --set: parameters that it has */
+  strut_setting *known; /* (known_count) of --set: parameters that it has */
   size_t known_count;
 } model_source;
 
@@ -49,7 +49,7 @@ static const char *add_own_settings(const strut_arguments *arguments, compared_m
   for (size_t i = 0; i < arguments->override_count && label; i++)
     if (arguments->override_model[i] == number + 1)
       label = strut_arena_format(&compared->arena, "%s %s=%s", label, arguments->overrides[i].name,
-                                 arguments->overrides[i].value);
+                                 arguments->overrides[i].text);
   return label;
 }
 
@@ -86,7 +86,7 @@ static bool print_notes(compared_models *compared, strut_diagnostics *diagnostic
 }
 
 static strut_status read_setup(compared_models *compared, const model_source *from,
-                               const strut_override *overrides, size_t count, strut_setup *setup) {
+                               const strut_setting *overrides, size_t count, strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
   strut_status status = strut_setup_read(setup, from->shown, from->text, from->length, overrides,
                                          count, STRUT_FOR_ANY, &diagnostics);

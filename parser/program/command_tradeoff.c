@@ -62,8 +62,8 @@ static bool write_drawn_value(const char *range, double u, char text[MOST_TEXT])
 }
 
 /* Checks NAME=LOW..HIGH or NAME=WORD,WORD. */
-static strut_status check_varied(const strut_arguments *arguments, const strut_override *varied) {
-  const char *value = varied->value, *dots = strstr(value, "..");
+static strut_status check_varied(const strut_arguments *arguments, const strut_setting *varied) {
+  const char *value = varied->text, *dots = strstr(value, "..");
   bool good = dots ? dots > value && dots[2] : *value && *value != ',';
   for (const char *c = value; *c && !dots; c++)
     good = good && !(*c == ',' && (c[1] == ',' || c[1] == '\0'));
@@ -73,16 +73,35 @@ static strut_status check_varied(const strut_arguments *arguments, const strut_o
                            varied->name, value);
 }
 
+/* Are all that vary parameters of the model? */
+static strut_status check_names(const strut_arguments *arguments) {
+  strut_setup setup;
+  strut_arguments quiet = *arguments;
+  quiet.no_notes = true;
+  strut_status status = strut_open_model(&quiet, STRUT_OPEN_FOR_ANY, &setup, NULL);
+  if (status) return status;
+  const strut_named_rows *names = STRUT_NAMED(setup.scene.parameters, setup.scene.parameter_count);
+  for (size_t i = 0; i < arguments->varied_count && !status; i++) {
+    const char *name = arguments->varied[i].name;
+    if (strut_parameter_named(&setup.scene, name)) continue;
+    strut_usage_error(arguments, "--vary %s: the model has no such parameter%s", name,
+                      strut_near_to(name, strut_row_name, names).text);
+    status = STRUT_BAD_SCENE;
+  }
+  strut_setup_free(&setup);
+  return status;
+}
+
 static strut_status open_point(const strut_arguments *arguments, uint64_t *seed, size_t number,
                                strut_setup *setup) {
   size_t varied = arguments->varied_count, set = arguments->override_count;
-  strut_override *overrides = strut_allocate(set + varied + 1, sizeof *overrides);
+  strut_setting *overrides = strut_allocate(set + varied + 1, sizeof *overrides);
   char(*texts)[MOST_TEXT] = strut_allocate(varied + 1, sizeof *texts);
   strut_status status = overrides && texts ? STRUT_OK : strut_print_out_of_memory();
   for (size_t i = 0; i < set && status == STRUT_OK; i++) overrides[i] = arguments->overrides[i];
   for (size_t i = 0; i < varied && status == STRUT_OK; i++) {
-    write_drawn_value(arguments->varied[i].value, draw_uniform(seed), texts[i]);
-    overrides[set + i] = (strut_override){arguments->varied[i].name, texts[i]};
+    write_drawn_value(arguments->varied[i].text, draw_uniform(seed), texts[i]);
+    overrides[set + i] = (strut_setting){.name = arguments->varied[i].name, .text = texts[i]};
   }
   if (status == STRUT_OK) {
     strut_arguments here = *arguments;
@@ -93,7 +112,7 @@ static strut_status open_point(const strut_arguments *arguments, uint64_t *seed,
     if (status != STRUT_OK && varied > 0) {
       fprintf(stderr, "strut tradeoff: at operating point %zu:", number + 1);
       for (size_t i = 0; i < varied; i++)
-        fprintf(stderr, " --set '%s=%s'", overrides[set + i].name, overrides[set + i].value);
+        fprintf(stderr, " --set '%s=%s'", overrides[set + i].name, overrides[set + i].text);
       fputc('\n', stderr);
     }
   }
@@ -111,6 +130,8 @@ static strut_status open_points(const strut_arguments *arguments, tradeoff_study
     status = check_varied(arguments, &arguments->varied[i]);
   if (status == STRUT_OK && count > 1 && strcmp(arguments->model, "-") == 0)
     status = strut_usage_error(arguments, "operating points need a model file, not standard input");
+  if (status == STRUT_OK && arguments->varied_count && strcmp(arguments->model, "-") != 0)
+    status = check_names(arguments);
   if (status != STRUT_OK) return status;
   study->setups = strut_arena_allocate(&study->arena, count, sizeof *study->setups);
   study->list = strut_arena_allocate(&study->arena, count, sizeof *study->list);

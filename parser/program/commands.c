@@ -297,7 +297,7 @@ static strut_status add_override(const strut_option *option, char *text, strut_a
     return with_help(to, STRUT_USAGE);
   }
   *equals = '\0';
-  const strut_override override = {text, equals + 1};
+  const strut_setting override = {.name = text, .text = equals + 1};
   if (varied) {
     to->varied[to->varied_count++] = override;
   } else {

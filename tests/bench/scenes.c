@@ -10,13 +10,13 @@
 strut_status bench_read(strut_setup *setup, const char *file, const char *const *set,
                         strut_error *error) {
   char path[1000], names[3][40], *text = NULL;
-  strut_override overrides[3];
+  strut_setting overrides[3];
   size_t count = 0, length = 0;
   strut_diagnostics diagnostics = {0};
   for (; count < 3 && set[count]; count++) {
     const char *equals = strchr(set[count], '=');
     snprintf(names[count], sizeof names[count], "%.*s", (int)(equals - set[count]), set[count]);
-    overrides[count] = (strut_override){names[count], equals + 1};
+    overrides[count] = (strut_setting){.name = names[count], .text = equals + 1};
   }
   snprintf(path, sizeof path, "%s/../%s", STRUT_TESTS_DIR, file);
   strut_status status = strut_file_read(path, &text, &length, error);

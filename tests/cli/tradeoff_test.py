@@ -335,7 +335,7 @@ for words, text in (
         (("--vari", "height=1..2"), "did you mean '--vary'")):
     done = run(BALL, *words, code=1)
     check(not done.stdout and text in done.stderr and done.stderr.count("\n") <= 2, f"{words}: {done.stderr}")
-for words, text in ((("--vary", "heigth=1..2"), "heigth"),
+for words, text in ((("--vary", "heigth=1..2"), "tradeoff: --vary heigth: the model has no such parameter; did you mean 'height'?"),
                     (("--vary", "height=1 s..2 s"), "operating point 1"),
                     (("--set", "step=0"), "step")):
     done = run(BALL, *words, code=2)

@@ -3,11 +3,11 @@
 
 #include "tests/support/test.h"
 
-void split_settings(faulty_case *c, strut_override *settings) {
+void split_settings(faulty_case *c, strut_setting *settings) {
   for (size_t i = 0; i < c->set_count; i++) {
     char *equals = strchr(c->set[i], '=');
     *equals = '\0';
-    settings[i] = (strut_override){c->set[i], equals + 1};
+    settings[i] = (strut_setting){.name = c->set[i], .text = equals + 1};
   }
 }
 

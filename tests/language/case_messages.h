@@ -6,7 +6,7 @@
 #include "tests/language/cases.h"
 
 /** The settings of a case, whose texts they divide: (c->set_count). */
-void split_settings(faulty_case *c, strut_override *settings);
+void split_settings(faulty_case *c, strut_setting *settings);
 /**
  * Strikes messages and their notes off those that the case announces; says which are not among them, and returns how
  * many. file_of: what a case calls the file of a place, NULL: nothing.

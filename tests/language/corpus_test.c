@@ -10,7 +10,7 @@ static strut_purpose purpose_of(const faulty_case *c) {
 
 /* Returns how much is wrong with a base or case. */
 static size_t check_case(faulty_case *c) {
-  strut_override set[CASE_MOST_SETS];
+  strut_setting set[CASE_MOST_SETS];
   split_settings(c, set);
   OWN(strut_setup) setup;
   OWN(strut_diagnostics) diagnostics = {0};

@@ -47,7 +47,7 @@ static size_t check_case(faulty_case *c, const char *folder) {
   size_t wrong = 0;
   strut_study_file file;
   strut_error error = {0};
-  strut_override set[CASE_MOST_SETS];
+  strut_setting set[CASE_MOST_SETS];
   split_settings(c, set);
   assert_true(write_faulty_case(c, folder));
   snprintf(path, sizeof path, "%s/%s.yaml", folder, c->name);
@@ -243,7 +243,7 @@ TEST(former_names_are_noted_once) {
 
 /* Comments and blanks change nothing; what decides results does. */
 TEST(identity) {
-  static const strut_override stiff[] = {{"stiffness", "101 N/m"}};
+  static const strut_setting stiff[] = {{.name = "stiffness", .text = "101 N/m"}};
   strut_study_file a, b, c;
   open_good("accuracy.yaml", &a);
   open_good("accuracy.yaml", &b);

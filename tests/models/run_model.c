@@ -35,13 +35,13 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
 
 model_run model_read_text(const char *name, const char *text, const char *const *settings) {
   char names[MOST_SETTINGS][NAME_ROOM];
-  strut_override overrides[MOST_SETTINGS];
+  strut_setting overrides[MOST_SETTINGS];
   size_t count = 0;
   for (; settings[count]; count++) {
     const char *sign = strchr(settings[count], '=');
     assert_true(sign && count < MOST_SETTINGS && sign - settings[count] < NAME_ROOM);
     snprintf(names[count], NAME_ROOM, "%.*s", (int)(sign - settings[count]), settings[count]);
-    overrides[count] = (strut_override){names[count], sign + 1};
+    overrides[count] = (strut_setting){.name = names[count], .text = sign + 1};
   }
   model_run run = {.model = NULL};
   OWN(strut_diagnostics) diagnostics = {0};

@@ -93,7 +93,7 @@ check(not late, "late.svg: the wall does not move, so that its curve has no bend
 # Labels and limits of an axis: the motion of x, 0.1 sin(10 t) and 0.2 cos(10 t), in ranges of 1 m and 2 m.
 sweep(STUDY + "".join(
     f"  y{k}: {{kind: motion, x: time, y: x, only: node=block, difference: variant, "
-    f"x_label: moment, y_limits: [-{k}, {k}], x_limits: [0, 2]}}\n" for k in (1, 2)))
+    f"x_label: moment, y_limits: [-{k} m, {100 * k} cm], x_limits: [0, 2]}}\n" for k in (1, 2)))
 high = [max(p[1] for p in line) - min(p[1] for p in line) for line in (curve("out/y1.svg"), curve("out/y2.svg"))]
 check(abs(high[0] / high[1] - 2) < 0.01, f"y_limits: heights {high}")
 wide = max(p[0] for p in curve("out/y1.svg")) - min(p[0] for p in curve("out/y1.svg"))
@@ -175,6 +175,7 @@ for figure, wanted in (
         ("{kind: snapshots, times: [3 kg]}", "expected a time such as"),
         ("{x: time, y: velocity}", "the table has no column 'time'"),
         ("{x: variant, y: velocity, x_limits: [2, 1]}", "'x_limits' of figure 'bad' must be two ascending"),
+        ("{x: variant, y: velocity, y_limits: [0 m, 1]}", "'y_limits' of figure 'bad': expected numbers in m/s, or without unit"),
         ("{kind: map, colors: red}", "'colors'"),
         ("{x: mass, y: velocity, band: variant=rst}", "'band' of figure 'bad': 'rst' is no value of 'variant'"),
         ("{kind: snapshots, only: node}", "'only' of figure 'bad': expects COLUMN=TEXT"),
@@ -199,8 +200,9 @@ said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n
 check("add 'trajectories: yes' to the study" in said and "study.yaml:" in said, said)
 # Texts that are computed are known at the end.
 os.rename("out", "refused")
-said = sweep(STUDY + "  bad: {x: variant, y: velocity, only: velocity=x}\n", code=2)
-check("figure 'bad': no row of the table has 'x' in column 'velocity'" in said and "study.yaml:" in said, said)
+said = sweep(STUDY + "".join(f"  {n}: {{x: variant, y: velocity, only: velocity={n}}}\n" for n in ("bad", "worse")), code=2)
+found = [f"figure '{n}': no row of the table has '{n}' in column 'velocity'" in said for n in ("bad", "worse")]
+check(all(found) and said.count("study.yaml:") == 2, said)
 said = sweep(STUDY + "  bad: {kind: period}\noutput: {channels: [force]}\n", code=2)
 check("'kind' of figure 'bad': the runs record no positions" in said and "study.yaml:" in said, said)
 finish()

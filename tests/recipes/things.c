@@ -41,7 +41,7 @@ static void expect(bool good, const char *what) {
 /* Reads the scene; *message: of the first error, "" without one. */
 static bool read_text(const char *text, const char *turn, strut_setup *setup, char message[200]) {
   strut_diagnostics diagnostics = {0};
-  const strut_override set = {"turn", turn};
+  const strut_setting set = {.name = "turn", .text = turn};
   strut_status status = strut_setup_read(setup, "recipe.yaml", text, strlen(text), &set,
                                          turn ? 1 : 0, STRUT_FOR_STATICS, &diagnostics);
   snprintf(message, 200, "%s", diagnostics.count ? diagnostics.items[0].message : "");

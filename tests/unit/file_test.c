@@ -11,7 +11,7 @@
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 
-/* What the disk is asked for, in order; link options lead calls of fsync and rename here. */
+/* What the disk is asked for, in order; link options lead calls of fsync and renameat here. */
 enum { MOST_ASKED = 16 };
 static struct asked {
   bool renames;
@@ -22,9 +22,9 @@ static int asked_count;
 static int fsync_fails; /* with this errno */
 
 int __real_fsync(int descriptor);
-int __real_rename(const char *from, const char *to);
+int __real_renameat(int from, const char *name, int to, const char *new_name);
 int __wrap_fsync(int descriptor);
-int __wrap_rename(const char *from, const char *to);
+int __wrap_renameat(int from, const char *name, int to, const char *new_name);
 
 int __wrap_fsync(int descriptor) {
   struct stat found;
@@ -34,11 +34,11 @@ int __wrap_fsync(int descriptor) {
   return __real_fsync(descriptor);
 }
 
-int __wrap_rename(const char *from, const char *to) {
+int __wrap_renameat(int from, const char *name, int to, const char *new_name) {
   struct stat found;
-  if (asked_count < MOST_ASKED && stat(from, &found) == 0)
+  if (asked_count < MOST_ASKED && fstatat(from, name, &found, 0) == 0)
     asked[asked_count++] = (struct asked){true, found.st_ino, found.st_size};
-  return __real_rename(from, to);
+  return __real_renameat(from, name, to, new_name);
 }
 
 static void assert_content(const char *path, const char *expected) {
@@ -124,7 +124,7 @@ TEST(two_writers_do_not_meet) {
   assert_int_equal(scratch_count(folder), 1);
 }
 
-/* What a killed process left is written over; what another one writes stays. */
+/* What a killed process left goes; what another one writes stays. */
 TEST(left_files_go) {
   int ready[2];
   assert_int_equal(pipe(ready), 0);
@@ -298,16 +298,14 @@ enum { WRITERS = 6 }; /* more than processors, so that the reader is interrupted
 /* Puts ever other bytes where strut's file is, as another process of a sweep does. */
 static void write_again_and_again(const char *directory, int writer) {
   static const char *const names[] = {"model.yaml", NULL};
-  char stage[200], from[220], to[220];
+  char stage[200], from[220];
   snprintf(stage, sizeof stage, "%s/stage-%d", directory, writer);
   snprintf(from, sizeof from, "%s/model.yaml", stage);
-  snprintf(to, sizeof to, "%s/model.yaml", directory);
   if (mkdir(stage, 0777) != 0) _exit(1);
   for (int i = 0; i < 250; i++) {
     FILE *file = fopen(from, "wb");
     if (!file || fprintf(file, "%d %d\n", i, writer) < 1 || fclose(file) != 0) _exit(2);
-    if (strut_ownership_claim(directory, stage, names, NULL) != STRUT_OK) _exit(3);
-    if (__real_rename(from, to) != 0) _exit(4);
+    if (strut_stage_move(stage, directory, names, NULL) != STRUT_OK) _exit(3);
   }
   _exit(0);
 }

@@ -9,7 +9,7 @@
 /* What every scene here ends with. */
 #define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"
 
-static strut_status read_text(strut_setup *setup, const char *text, const strut_override *set,
+static strut_status read_text(strut_setup *setup, const char *text, const strut_setting *set,
                               size_t sets) {
   OWN(strut_diagnostics) diagnostics = {0};
   return strut_setup_read(setup, "test.yaml", text, strlen(text), set, sets, STRUT_FOR_RUN,
@@ -17,8 +17,7 @@ static strut_status read_text(strut_setup *setup, const char *text, const strut_
 }
 
 /* Reads a scene that must be valid. */
-static void read_good(strut_setup *setup, const char *text, const strut_override *set,
-                      size_t sets) {
+static void read_good(strut_setup *setup, const char *text, const strut_setting *set, size_t sets) {
   OWN(strut_diagnostics) diagnostics = {0};
   if (strut_setup_read(setup, "test.yaml", text, strlen(text), set, sets, STRUT_FOR_RUN,
                        &diagnostics) != STRUT_OK)
@@ -78,23 +77,25 @@ TEST(overrides) {
       "nodes: {a: {position: [twice, bare], mass: f*1 kg s}}\n"
       "configurations: {I: {a: [1, 1]}, II: {a: [2, 2]}}\n"
       "initial: {configuration: start}\n" RUN;
-  const strut_override set[] = {
-      {"f", "20"}, {"l", "twice_bare"}, {"bare", "1 cm"}, {"start", "II"}};
+  const strut_setting set[] = {{.name = "f", .text = "20"},
+                               {.name = "l", .text = "twice_bare"},
+                               {.name = "bare", .text = "1 cm"},
+                               {.name = "start", .text = "II"}};
   strut_setup s;
   read_good(&s, text, NULL, 0);
   assert_true(s.scene.nodes[0].position[0] == 0.004 && s.scene.nodes[0].mass == 10);
   assert_true(s.scene.nodes[0].start[0] == 1);
   strut_setup_free(&s);
-  const strut_override good[] = {set[0], {"l", "1 m + 100 mm"}, set[2], set[3]};
+  const strut_setting good[] = {set[0], {.name = "l", .text = "1 m + 100 mm"}, set[2], set[3]};
   read_good(&s, text, good, 4);
   assert_true(s.scene.nodes[0].position[0] == 2.2 && s.scene.nodes[0].position[1] == 0.01);
   assert_true(s.scene.nodes[0].mass == 20 && s.scene.nodes[0].start[0] == 2);
   assert_all_texts(s.scene.parameters[0].text, "20", s.scene.parameters[4].text, "II");
   strut_setup_free(&s);
   assert_int_equal(read_text(&s, text, &set[1], 1), STRUT_BAD_SCENE);
-  const strut_override circle = {"l", "twice"}, wrong = {"bare", "1 kg"};
-  assert_int_equal(read_text(&s, text, &circle, 1), STRUT_BAD_SCENE);
-  assert_int_equal(read_text(&s, text, &wrong, 1), STRUT_BAD_SCENE); /* where it is used */
+  const strut_setting wrong[] = {{.name = "l", .text = "twice"}, /* a circle */
+                                 {.name = "bare", .text = "1 kg"}};
+  for (int i = 0; i < 2; i++) assert_int_equal(read_text(&s, text, &wrong[i], 1), STRUT_BAD_SCENE);
 }
 
 TEST(configurations) {
@@ -128,7 +129,7 @@ TEST(configurations) {
   assert_true(s.scene.start_equilibrium == 0 && s.scene.nodes[2].velocity[1] == 1);
   assert_true(s.scene.nodes[2].start[0] == 1); /* as drawn, until it is resolved */
   strut_setup_free(&s);
-  read_good(&s, text, &(strut_override){"start", "II"}, 1);
+  read_good(&s, text, &(strut_setting){.name = "start", .text = "II"}, 1);
   assert_int_equal(s.scene.start_equilibrium, 1);
   strut_setup_free(&s);
 }

@@ -209,7 +209,7 @@ TEST(a_full_disk) {
   strut_error error = {0};
   strut_merged merged;
   const char *disk = scratch_make();
-  if (!scratch_mount_small_disk(disk, 16)) skip();
+  if (!scratch_mount_small_disk(disk, 20)) skip();
   run_shard(study, (strut_shard){0, 0}, 100);
   char filler[9000] = "";
   memset(filler, 'x', sizeof filler - 1);

@@ -260,9 +260,15 @@ void strut_sweep_warn(strut_sweep_job *job, const char *code, const char *format
   va_end(arguments);
 }
 
-/* What `strut run` says of a scene before it runs it. */
-static strut_status warn_of_scene(strut_sweep_job *job) {
+/* What `strut run` says of a scene before it runs it; and that a column asked for stays empty. */
+static strut_status warn_of_scene(const strut_study *study, strut_sweep_job *job) {
   strut_findings found = {0};
+  bool outcome = strut_keep_has(&study->keep, STRUT_KEEP_OUTCOME) ||
+                 (study->refine.where && strcmp(study->refine.where, "outcome") == 0);
+  if (outcome && !job->setup.scene.configuration_count)
+    strut_sweep_warn(job, "outcome",
+                     "'outcome' stays empty: the model has no configurations that a run could end "
+                     "near");
   strut_status status = strut_setup_warn(&job->setup, &found);
   for (size_t i = 0; i < found.count; i++)
     strut_sweep_warn(job, found.items[i].key, "%s", found.items[i].message);
@@ -276,7 +282,7 @@ static strut_status run_first(const strut_sweep_worker *worker, strut_sweep_job 
   strut_summary summary = {0};
   strut_sweep_record *record = NULL;
   strut_status status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
-  if (!status) status = warn_of_scene(job);
+  if (!status) status = warn_of_scene(worker->plan->study, job);
   if (!status) status = begin_record(worker, job, &record);
   if (status) return status;
   status = strut_sweep_run_scene(worker, job, true, &summary);

@@ -150,8 +150,7 @@ enum { ABI_SCENE_ARRAYS = 9 };
 
 struct strutlib_scene {
   abi_source *source;
-  strut_override *overrides; /* (setting_count) in the arena */
-  strut_setting *settings;   /* the same */
+  strut_setting *settings; /* (setting_count) in the arena */
   size_t setting_count;
   strut_setup setup; /* as strut_open_model reads it for any purpose */
   abi_messages messages;

@@ -459,7 +459,7 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
   if (abi_lacks(error, scene, "scene")) return STRUT_USAGE;
   const strut_arguments begun = {.command = command,
                                  .model = scene->source->name,
-                                 .overrides = scene->overrides,
+                                 .overrides = scene->settings,
                                  .override_count = scene->setting_count};
   return abi_call_begin_file(call, &begun, options, control, error, messages);
 }

@@ -169,7 +169,7 @@ static char *write_parts(const strutlib_scene *scene, strutlib_error **error) {
   if (status == STRUT_OK) /* the tree is changed: it cannot be that of the scene */
     status = strut_scene_source_open(source->name, source->text, source->length, &unused, &tree);
   if (status == STRUT_OK)
-    status = strut_short_write(tree, scene->overrides, scene->setting_count, flat, &scene->setup,
+    status = strut_short_write(tree, scene->settings, scene->setting_count, flat, &scene->setup,
                                source->name, &text);
   if (status != STRUT_OK) abi_fail_with(error, status, NULL);
   strut_diagnostics_free(&unused);
@@ -283,10 +283,9 @@ strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut
 
 static bool add_setting(strutlib_scene *scene, const char *name, const char *value) {
   size_t at = 0; /* a later setting replaces an earlier one */
-  while (at < scene->setting_count && strcmp(scene->overrides[at].name, name) != 0) at++;
+  while (at < scene->setting_count && strcmp(scene->settings[at].name, name) != 0) at++;
   name = strut_arena_text(&scene->arena, name, strlen(name));
   value = strut_arena_text(&scene->arena, value, strlen(value));
-  scene->overrides[at] = (strut_override){name, value};
   scene->settings[at] = (strut_setting){.name = name, .text = value};
   if (at == scene->setting_count) scene->setting_count++;
   return name && value;
@@ -295,11 +294,10 @@ static bool add_setting(strutlib_scene *scene, const char *name, const char *val
 static bool add_settings(strutlib_scene *scene, const strutlib_scene *before, size_t count,
                          const char *const *names, const char *const *values) {
   size_t most = count + (before ? before->setting_count : 0);
-  scene->overrides = strut_arena_allocate(&scene->arena, most, sizeof *scene->overrides);
   scene->settings = strut_arena_allocate(&scene->arena, most, sizeof *scene->settings);
-  bool good = scene->overrides && scene->settings;
+  bool good = scene->settings;
   for (size_t i = 0; good && before && i < before->setting_count; i++)
-    good = add_setting(scene, before->overrides[i].name, before->overrides[i].value);
+    good = add_setting(scene, before->settings[i].name, before->settings[i].text);
   for (size_t i = 0; good && i < count; i++) good = add_setting(scene, names[i], values[i]);
   return good;
 }

@@ -155,7 +155,8 @@ static strut_status check_options(abi_call *call, sweep *self) {
   self->scenes = (strut_varied_scenes){
       .file = self->scene->source->name,
       .source = self->scene->source->tree,
-      .purpose = run ? strut_run_options_purpose(arguments) : STRUT_FOR_ANY_STATICS};
+      .purpose = run ? strut_run_options_purpose(arguments) : STRUT_FOR_ANY_STATICS,
+      .options = &self->options};
   self->options = *arguments;
   self->options.listener = NULL;
   if (!strut_run_option_given(arguments, 0)) return STRUT_OK;
@@ -165,26 +166,6 @@ static strut_status check_options(abi_call *call, sweep *self) {
   status = strut_run_options_apply(arguments, &setup);
   strut_setup_free(&setup);
   return status;
-}
-
-/* ---- scenes of points; called from several threads ---- */
-
-static strut_status vary(void *context, const strut_study_value *values, const strut_derived_by *by,
-                         size_t count, const double *numbers, strut_setup *setup,
-                         strut_error *error) {
-  const sweep *self = context;
-  strut_status status =
-      strut_varied_scenes_vary(&self->scenes, values, by, count, numbers, setup, error);
-  if (status == STRUT_OK && (status = strut_run_options_apply(&self->options, setup)) != STRUT_OK) {
-    strut_fail(error, status, "the options do not fit the scene of this point");
-    strut_setup_free(setup);
-  }
-  return status;
-}
-
-static strut_status setup_of(void *context, const strut_study_value *values, strut_setup *setup,
-                             strut_error *error) {
-  return vary(context, values, NULL, 0, NULL, setup, error);
 }
 
 /* ---- rows ---- */
@@ -326,7 +307,8 @@ static strut_status complete(sweep *self, strutlib_result *result, const abi_scr
 
 /* Runs a sweep that is read, and completes the result. */
 static strut_status run_sweep(sweep *self, strutlib_result *result, strut_error *what) {
-  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, self, vary};
+  const strut_sweep_scenes scenes = {strut_varied_scenes_read, strut_setup_write, &self->scenes,
+                                     strut_varied_scenes_vary};
   strut_sweep_state state = {0};
   abi_scratch scratch;
   strut_error late = {0};
@@ -398,7 +380,7 @@ typedef struct study {
   strut_study_job job;
   strutlib_result *result;
   strutlib_control *control, own;
-  strut_override *overrides; /* in the arena of the result */
+  strut_setting *overrides; /* in the arena of the result */
 } study;
 
 static void show_study(const strut_study_job *job, const strut_sweep_state *state) {
@@ -473,7 +455,7 @@ strutlib_result *strutlib_study(const char *path, const char *directory, size_t 
     if (!s.overrides) status = (strut_status)abi_no_memory(error);
   }
   for (size_t i = 0; !status && i < setting_count; i++)
-    s.overrides[i] = (strut_override){settings[i], set[i]};
+    s.overrides[i] = (strut_setting){.name = settings[i], .text = set[i]};
   const strut_arguments begun = {.command = &abi_study_command,
                                  .model = path,
                                  .output = directory,

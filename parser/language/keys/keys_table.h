@@ -208,8 +208,8 @@
   X(FIGURE, LABELS, "labels", NAMES, NONE, ANY, "by the columns", OPTIONAL, 0, "a label", LIST(strut_study_figure, labels, label_count), "Lines, motion and best: what the legend calls the curves, in their order.") \
   X(FIGURE, X_LABEL, "x_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_label), "Lines, map and motion: label of the x axis, by default the column's name. The unit is added.") \
   X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise for the y axis.") \
-  X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis, ascending, in the column's SI unit.") \
-  X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise for the y axis.") \
+  X(FIGURE, X_LIMITS, "x_limits", PAIR, CONTEXT, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis, ascending, without unit in the column's SI unit.") \
+  X(FIGURE, Y_LIMITS, "y_limits", PAIR, CONTEXT, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise for the y axis.") \
   X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
 
 #define STRUT_PATH_KEYS(X) \

@@ -238,7 +238,8 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
   if (type == STRUT_TYPE_WORD) return strut_read_word(reader, key, value, owner, &slot->word);
   if (type == STRUT_TYPE_WORDS) return read_words(reader, key, value, owner, &slot->words);
   if (type == STRUT_TYPE_FIXED) return read_fixed(reader, key, value, owner, &slot->word);
-  if (type != STRUT_TYPE_PAIR || key->section == STRUT_SECTION_SCENE) /* no parameters yet */
+  if (type != STRUT_TYPE_PAIR || key->section == STRUT_SECTION_SCENE || /* no parameters yet */
+      key->measure == STRUT_MEASURE_CONTEXT)
     return true;
   return strut_read_pair(reader, value, key->name, owner, strut_measure_dimension(key->measure),
                          slot->number);

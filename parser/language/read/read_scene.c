@@ -233,17 +233,11 @@ static strut_status read_from(const strut_scene_source *source, const strut_sett
 }
 
 strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text, size_t length,
-                              const strut_override *overrides, size_t override_count,
+                              const strut_setting *settings, size_t setting_count,
                               strut_purpose purpose, strut_diagnostics *diagnostics) {
-  strut_setting *settings = strut_allocate(override_count, sizeof *settings);
   strut_setup_init(setup);
   strut_diagnostics_source(diagnostics, file, text, length);
-  if (!settings) return STRUT_NO_MEMORY;
-  for (size_t i = 0; i < override_count; i++)
-    settings[i] = (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
-  strut_status status = read_from(NULL, settings, override_count, purpose, diagnostics, setup);
-  strut_release(settings);
-  return status;
+  return read_from(NULL, settings, setting_count, purpose, diagnostics, setup);
 }
 
 static strut_status keep_used(strut_scene_source *source, strut_diagnostics *from) {

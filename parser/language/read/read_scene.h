@@ -8,12 +8,7 @@
 #include "parser/language/expression/expression.h"
 #include "parser/language/yaml/document.h"
 
-/** One --set name=value. */
-typedef struct strut_override {
-  const char *name, *value;
-} strut_override;
-
-/** A parameter given from outside of the scene's text: by --set, or by a study. */
+/** A parameter given from outside of the scene's text: by --set, of which there are name and text, or by a study. */
 typedef struct strut_setting {
   const char *name, *text; /* an expression in the scene's own parameters, or a text */
   bool known, bare;        /* known: what the text says is the value below */
@@ -28,8 +23,8 @@ typedef struct strut_setting {
  * show. Neither file nor text is copied: diagnostics refers to both.
  */
 STRUT_API strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text,
-                                        size_t length, const strut_override *overrides,
-                                        size_t override_count, strut_purpose purpose,
+                                        size_t length, const strut_setting *settings,
+                                        size_t setting_count, strut_purpose purpose,
                                         strut_diagnostics *diagnostics);
 
 /** The declaration of a parameter in a scene's text. */
@@ -67,7 +62,7 @@ STRUT_API const strut_declared *strut_scene_source_parameter(const strut_scene_s
 /** Enters one more file, which outlives the source; its number for places, 0: there are too many. */
 STRUT_API unsigned strut_scene_source_use(strut_scene_source *source, const char *file,
                                           const char *text, size_t length);
-/** As strut_setup_read, from the tree, with settings in place of overrides. */
+/** As strut_setup_read, from the tree. */
 STRUT_API strut_status strut_scene_source_read(const strut_scene_source *source,
                                                const strut_setting *settings, size_t setting_count,
                                                strut_purpose purpose,

@@ -198,13 +198,31 @@ static void require_columns(strut_study_reader *reader, const strut_fields *fiel
                          map ? "map" : "figure", key->text, columns[i].name);
 }
 
-/* Reports limits that do not ascend. */
-static void check_limits(strut_study_reader *reader, const strut_slot *slot, const strut_tree *key,
-                         const double limits[2]) {
-  if (slot->state == STRUT_GIVEN && !(limits[0] < limits[1]))
-    strut_report_error(reader->reader, slot->value->place,
-                       "'%s' of figure '%s' must be two ascending numbers", slot->key->text,
-                       key->text);
+/* A number of any dimension; *unit: NULL without one. False: that was reported. */
+static bool read_any(strut_study_reader *reader, const strut_tree *value, const char *key,
+                     strut_owner owner, double *number, const char **unit) {
+  strut_quantity q;
+  if (!strut_read_any_quantity(reader->reader, value, key, owner, "a number", &q)) return false;
+  *number = q.value;
+  *unit = q.bare ? NULL : strut_dimension_unit(q.dimension);
+  return true;
+}
+
+/* Ends of an axis, in the unit of its column or without one. */
+static void read_limits(strut_study_reader *reader, const strut_slot *slot, strut_owner owner,
+                        double limits[2], const char **unit) {
+  const char *key = slot->key ? slot->key->text : "", *units[2];
+  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *list = slot->value;
+  for (int i = 0; i < 2; i++)
+    if (list->count == 2 &&
+        !read_any(reader, i ? list->first->next : list->first, key, owner, &limits[i], &units[i]))
+      return;
+  *unit = units[0] ? units[0] : units[1];
+  if (list->count != 2 || !(limits[0] < limits[1]) ||
+      (units[0] && units[1] && strcmp(units[0], units[1]) != 0))
+    strut_report_error(reader->reader, list->place,
+                       "'%s' of figure '%s' must be two ascending numbers", key, owner.name);
 }
 
 static void read_figure(strut_study_reader *reader, const strut_tree *key,
@@ -215,8 +233,10 @@ static void read_figure(strut_study_reader *reader, const strut_tree *key,
   strut_read_fields(reader->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
   *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
   strut_store(reader->reader, &fields, owner, figure);
-  check_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), key, figure->x_limits);
-  check_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), key, figure->y_limits);
+  read_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), owner, figure->x_limits,
+              &figure->limit_units[0]);
+  read_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), owner, figure->y_limits,
+              &figure->limit_units[1]);
   require_columns(reader, &fields, key, figure);
   const strut_slot *to = strut_slot_of(&fields, STRUT_KEY_FIGURE_TO);
   if (to->state == STRUT_GIVEN && !(figure->from < figure->to))
@@ -232,19 +252,15 @@ static void read_figures(strut_study_reader *reader, const strut_slot *slot) {
     read_figure(reader, key, &study->figures[study->figure_count++]);
 }
 
-/* A number of any dimension, which the model decides; *unit: NULL without one. */
+/* A number whose dimension the model decides. */
 static void read_path_value(strut_study_reader *reader, strut_fields *fields, int key,
                             const char **unit) {
-  strut_quantity q;
   const strut_key *k = strut_key_at(key);
   const strut_slot *slot = strut_slot_of(fields, key);
-  strut_study *study = &reader->file->study;
-  if (slot->state != STRUT_GIVEN) return;
-  if (!strut_read_any_quantity(reader->reader, slot->value, k->name, path_owner, "a number", &q))
-    return;
-  memcpy((char *)study + k->field.offset, &q.value, sizeof q.value);
-  strut_store_choice(k, study);
-  *unit = q.bare ? NULL : strut_dimension_unit(q.dimension);
+  char *study = (char *)&reader->file->study;
+  if (slot->state == STRUT_GIVEN && read_any(reader, slot->value, k->name, path_owner,
+                                             (double *)(void *)(study + k->field.offset), unit))
+    strut_store_choice(k, study);
 }
 
 static void read_path(strut_study_reader *reader, const strut_slot *slot) {
@@ -274,7 +290,7 @@ static void read_rest(strut_study_reader *reader, strut_fields *top) {
 
 /* Reads what refers to the model's parameters: set, derive and axes. */
 static void read_points(strut_study_reader *reader, strut_fields *top,
-                        const strut_override *overrides, size_t count) {
+                        const strut_setting *overrides, size_t count) {
   strut_study_file *file = reader->file;
   const strut_slot *set = strut_slot_of(top, STRUT_KEY_STUDY_SET);
   const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
@@ -282,9 +298,8 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   file->settings =
       strut_study_allocate(reader, count + reader->declared_count, sizeof *file->settings);
   if (!file->settings) return;
-  for (size_t i = 0; i < count; i++)
-    file->settings[file->setting_count++] =
-        (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
+  for (; file->setting_count < count; file->setting_count++)
+    file->settings[file->setting_count] = overrides[file->setting_count];
   read_settings(reader, set, count, true);
   read_settings(reader, derive, count, false);
   const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
@@ -319,7 +334,7 @@ static bool is_model(const strut_tree *root) {
          !strut_tree_find(root, "study", NULL) && !strut_tree_find(root, "model", NULL);
 }
 
-static strut_status read_all(strut_study_reader *study_reader, const strut_override *overrides,
+static strut_status read_all(strut_study_reader *study_reader, const strut_setting *overrides,
                              size_t count, strut_error *error) {
   strut_study_file *file = study_reader->file;
   strut_reader *reader = study_reader->reader;
@@ -353,7 +368,7 @@ static strut_status read_all(strut_study_reader *study_reader, const strut_overr
   return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;
 }
 
-strut_status strut_study_open(const char *path, const strut_override *overrides, size_t count,
+strut_status strut_study_open(const char *path, const strut_setting *overrides, size_t count,
                               strut_study_file *file, strut_error *error) {
   *file = (strut_study_file){.path = path};
   strut_status status = strut_file_read(path, &file->text, &file->length, error);

@@ -53,7 +53,7 @@ typedef struct strut_study_file {
  * Reads the study at `path` and its model. On STRUT_BAD_SCENE strut_study_messages has every finding;
  * STRUT_FILE_TROUBLE with the reason in `error`. overrides (--set) are not copied.
  */
-STRUT_API strut_status strut_study_open(const char *path, const strut_override *overrides,
+STRUT_API strut_status strut_study_open(const char *path, const strut_setting *overrides,
                                         size_t override_count, strut_study_file *file,
                                         strut_error *error);
 /** All messages as printed text, at most `most` of each file; NULL: memory is out. */

@@ -20,10 +20,9 @@ STRUT_API char *strut_setup_write(const strut_setup *setup);
  * the bit, which is checked as of a file `name`: *text is NULL with STRUT_OK where the text would differ, as
  * where a node of a copy has moved. STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_short_write(strut_scene_source *source,
-                                         const strut_override *overrides, size_t override_count,
-                                         const char *before, const strut_setup *setup,
-                                         const char *name, char **text);
+STRUT_API strut_status strut_short_write(strut_scene_source *source, const strut_setting *overrides,
+                                         size_t override_count, const char *before,
+                                         const strut_setup *setup, const char *name, char **text);
 
 /**
  * The text, a block of strut_allocate, that reads as this tree again; NULL: memory is out. Only texts of

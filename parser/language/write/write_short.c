@@ -137,12 +137,11 @@ typedef struct short_writer {
 /* ---- parameters as they were set ---- */
 
 /* What --set gave, in the words of the file: a plain number has the unit that was declared. */
-static strut_tree *set_value(short_writer *self, const strut_tree *like,
-                             const strut_override *set) {
+static strut_tree *set_value(short_writer *self, const strut_tree *like, const strut_setting *set) {
   const strut_declared *declared = strut_scene_source_parameter(self->source, set->name);
   char number[STRUT_NUMBER_TEXT];
   if (!declared || declared->text || declared->bare) {
-    strut_tree *text = strut_tree_scalar(&self->document.arena, like, set->value);
+    strut_tree *text = strut_tree_scalar(&self->document.arena, like, set->text);
     if (text) text->quoted = declared && declared->text;
     return text;
   }
@@ -150,7 +149,7 @@ static strut_tree *set_value(short_writer *self, const strut_tree *like,
   strut_number_text(used ? used->value : (double)NAN, number);
   const char *unit = strut_dimension_unit(declared->dimension);
   if (strcmp(unit, "SI") == 0)
-    return strut_tree_scalar(&self->document.arena, like, set->value); /* it has none */
+    return strut_tree_scalar(&self->document.arena, like, set->text); /* it has none */
   bool plain = strcmp(unit, "1") == 0;
   return strut_tree_scalar(&self->document.arena, like,
                            strut_arena_format(&self->document.arena, "%s%s%s", number,
@@ -159,7 +158,7 @@ static strut_tree *set_value(short_writer *self, const strut_tree *like,
 
 /* {parameters: {NAME: VALUE, ...}} */
 static strut_tree *settings_tree(short_writer *self, const strut_tree *root,
-                                 const strut_override *overrides, size_t count) {
+                                 const strut_setting *overrides, size_t count) {
   strut_arena *arena = &self->document.arena;
   strut_tree_builder map = strut_tree_begin(arena, root), inner = strut_tree_begin(arena, root);
   for (size_t i = 0; i < count; i++)
@@ -284,7 +283,7 @@ static strut_tree *lay_over(short_writer *self, const strut_tree *root, const st
   return result;
 }
 
-static strut_tree *whole_tree(short_writer *self, const strut_override *overrides, size_t count,
+static strut_tree *whole_tree(short_writer *self, const strut_setting *overrides, size_t count,
                               const char *before, const char *after) {
   const strut_tree *root = self->source->document.root;
   const strut_tree *old = read_flat(self, before), *now = old ? read_flat(self, after) : NULL;
@@ -315,7 +314,7 @@ static strut_status reads_as(const char *name, const char *text, const char *fla
   return STRUT_OK;
 }
 
-strut_status strut_short_write(strut_scene_source *source, const strut_override *overrides,
+strut_status strut_short_write(strut_scene_source *source, const strut_setting *overrides,
                                size_t override_count, const char *before, const strut_setup *setup,
                                const char *name, char **text) {
   short_writer w = {.source = source, .setup = setup};

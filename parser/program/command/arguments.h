@@ -76,10 +76,10 @@ typedef struct strut_arguments {
   const char *model;              /* the first positional argument, or NULL */
   const char **models;            /* (model_count) all positional arguments */
   size_t model_count;
-  strut_override *overrides; /* (override_count) of --set */
-  size_t *override_model;    /* (override_count) how many models stand before each */
+  strut_setting *overrides; /* (override_count) of --set */
+  size_t *override_model;   /* (override_count) how many models stand before each */
   size_t override_count;
-  strut_override *varied; /* (varied_count) of --vary */
+  strut_setting *varied; /* (varied_count) of --vary */
   size_t varied_count;
   bool no_notes; /* a model's notes have been printed */
 
@@ -138,7 +138,7 @@ typedef struct strut_option {
 #define STRUT_FILLS(MEMBER)                                                                        \
   .kind = _Generic(((strut_arguments *)0)->MEMBER,                       \
                    bool: STRUT_OPTION_FLAG,                              \
-                   strut_override *: STRUT_OPTION_SETTING,               \
+                   strut_setting *: STRUT_OPTION_SETTING,               \
                    const char *: STRUT_OPTION_TEXT,                      \
                    strut_given_number: STRUT_OPTION_NUMBER,              \
                    strut_given_whole: STRUT_OPTION_WHOLE,                \

@@ -188,8 +188,7 @@ strut_status strut_varied_scenes_open(const strut_arguments *arguments, const ch
   bool fine = scenes->settings && scenes->source;
   for (size_t i = 0; i < arguments->override_count && fine; i++)
     if (!is_varied(names, count, arguments->overrides[i].name))
-      scenes->settings[scenes->setting_count++] = (strut_setting){
-          .name = arguments->overrides[i].name, .text = arguments->overrides[i].value};
+      scenes->settings[scenes->setting_count++] = arguments->overrides[i];
   for (size_t i = 0; i < count && fine; i++)
     fine = add_varied(scenes, names[i], dimensions ? &dimensions[i] : NULL);
   if (fine) return STRUT_OK;
@@ -225,10 +224,11 @@ static strut_status report_first(const strut_varied_scenes *scenes, const strut_
                     first->place.column, where, at, between, message);
 }
 
-strut_status strut_varied_scenes_vary(const strut_varied_scenes *scenes,
-                                      const strut_study_value *values, const strut_derived_by *by,
-                                      size_t more, const double *numbers, strut_setup *setup,
+strut_status strut_varied_scenes_vary(void *context, const strut_study_value *values,
+                                      const strut_derived_by *by, size_t more,
+                                      const double *numbers, strut_setup *setup,
                                       strut_error *error) {
+  const strut_varied_scenes *scenes = context;
   strut_diagnostics diagnostics = {0};
   const size_t fixed = scenes->setting_count - scenes->varied;
   size_t count = scenes->setting_count, most = count + more;
@@ -253,12 +253,14 @@ strut_status strut_varied_scenes_vary(const strut_varied_scenes *scenes,
     strut_no_memory(error, "");
   strut_diagnostics_free(&diagnostics);
   strut_release(settings);
-  return status;
+  if (status || !scenes->options) return status;
+  if ((status = strut_run_options_apply(scenes->options, setup)) == STRUT_OK) return STRUT_OK;
+  strut_setup_free(setup);
+  return strut_fail(error, status, "the options do not fit the scene of this point");
 }
 
-strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
-                                      const strut_study_value *values, strut_setup *setup,
-                                      strut_error *error) {
+strut_status strut_varied_scenes_read(void *scenes, const strut_study_value *values,
+                                      strut_setup *setup, strut_error *error) {
   return strut_varied_scenes_vary(scenes, values, NULL, 0, NULL, setup, error);
 }
 
@@ -273,39 +275,18 @@ void strut_varied_scenes_free(strut_varied_scenes *scenes) {
   *scenes = (strut_varied_scenes){0};
 }
 
-/* A run whose derivatives are taken. */
-typedef struct varied_run {
-  const strut_varied_scenes *scenes;
-  strut_arguments arguments; /* without messages */
-} varied_run;
-
-static strut_status vary_run(void *context, const strut_study_value *values,
-                             const strut_derived_by *by, size_t count, const double *numbers,
-                             strut_setup *setup, strut_error *error) {
-  const varied_run *self = context;
-  strut_status status =
-      strut_varied_scenes_vary(self->scenes, values, by, count, numbers, setup, error);
-  if (status) return status;
-  status = strut_run_options_apply(&self->arguments, setup);
-  if (status) strut_setup_free(setup);
-  return status;
-}
-
-static strut_status setup_run(void *context, const strut_study_value *values, strut_setup *setup,
-                              strut_error *error) {
-  return vary_run(context, values, NULL, 0, NULL, setup, error);
-}
-
 strut_status strut_varied_scenes_derive(const strut_arguments *arguments,
                                         strut_varied_scenes *scenes, const strut_setup *setup,
                                         const strut_flag *interrupt, strut_summary *summary,
                                         strut_error *error) {
-  varied_run self = {scenes, *arguments};
-  const strut_sweep_scenes made = {.setup = setup_run, .vary = vary_run, .context = &self};
+  strut_arguments silent = *arguments;
+  const strut_sweep_scenes made = {
+      .setup = strut_varied_scenes_read, .vary = strut_varied_scenes_vary, .context = scenes};
   const strut_sweep_options how = {.threads = (int)arguments->threads.value,
                                    .interrupt = interrupt};
   if (!setup->experiment.derivative_count) return STRUT_OK;
-  self.arguments.listener = NULL;
+  silent.listener = NULL;
+  scenes->options = &silent;
   strut_status status = strut_varied_scenes_open(arguments, NULL, 0, scenes, NULL);
   if (!status) status = strut_sweep_derive_run(&made, setup, &how, summary, error);
   strut_varied_scenes_free(scenes);

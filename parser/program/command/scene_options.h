@@ -40,6 +40,7 @@ typedef struct strut_varied_scenes {
   strut_scene_source *own;
   strut_setting *settings; /* (setting_count) those of --set, and last the varied ones */
   size_t setting_count, varied;
+  const strut_arguments *options; /* of method and model, applied to each scene; NULL: none */
 } strut_varied_scenes;
 
 /**
@@ -50,19 +51,18 @@ strut_status strut_varied_scenes_open(const strut_arguments *arguments, const ch
                                       size_t count, strut_varied_scenes *scenes,
                                       strut_dimension *dimensions);
 /**
- * The scene where the parameters have these values. STRUT_BAD_SCENE with the first finding and its place. From any
- * thread.
+ * The scene of the strut_varied_scenes where the parameters have these values. STRUT_BAD_SCENE with the first finding
+ * and its place. From any thread.
  */
-strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
-                                      const strut_study_value *values, strut_setup *setup,
-                                      strut_error *error);
+strut_status strut_varied_scenes_read(void *scenes, const strut_study_value *values,
+                                      strut_setup *setup, strut_error *error);
 /** The same where more parameters have the values numbers (count) [SI]. */
-strut_status strut_varied_scenes_vary(const strut_varied_scenes *scenes,
-                                      const strut_study_value *values, const strut_derived_by *by,
-                                      size_t count, const double *numbers, strut_setup *setup,
+strut_status strut_varied_scenes_vary(void *scenes, const strut_study_value *values,
+                                      const strut_derived_by *by, size_t count,
+                                      const double *numbers, strut_setup *setup,
                                       strut_error *error);
-/** The same of a single parameter; `context` is the strut_varied_scenes. */
-strut_status strut_varied_scenes_at(void *context, double value, strut_setup *setup,
+/** The same of a single parameter. */
+strut_status strut_varied_scenes_at(void *scenes, double value, strut_setup *setup,
                                     strut_error *error);
 /**
  * The derivatives of a run of the setup that is done, whose scenes these are with the options of `arguments`; opens

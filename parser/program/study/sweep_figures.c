@@ -18,8 +18,8 @@
 typedef struct source {
   const strut_sweep_plan *plan;
   const strut_study_figure *figure;
-  bool runs, lines;  /* lines may be bars over texts */
-  const char **unit; /* of the y before; NULL: none */
+  bool runs, lines;   /* lines may be bars over texts */
+  const char **units; /* of x, and of the y before; NULL: none */
 } source;
 
 static const char *column_name(const void *context, size_t i) {
@@ -76,7 +76,8 @@ static void judge_column(const void *context, size_t i, const strut_figure_key *
   bool motion = self->figure->kind == STRUT_FIGURE_MOTION;
   bool words =
       self->runs && i >= node ? i == node : i == plan->column_count || plan->columns[i].word;
-  bool bars = self->lines && strcmp(key->key, "x") == 0, y = strcmp(key->key, "y") == 0;
+  bool x = strcmp(key->key, "x") == 0, y = strcmp(key->key, "y") == 0, bars = self->lines && x;
+  const char **before = &self->units[y];
   if (key->number ? words && !bars : self->runs && i >= node + motion)
     snprintf(fault, STRUT_MESSAGE_MOST,
              !key->number ? motion ? "'%.60s' is recorded; expected an axis, or 'node'"
@@ -89,12 +90,12 @@ static void judge_column(const void *context, size_t i, const strut_figure_key *
     snprintf(fault, STRUT_MESSAGE_MOST, "'%.60s' is no value of '%.60s'%s%s%s", text, name,
              words ? "" : "; expected a number as in the table", !words && *unit ? ", in " : "",
              words ? "" : unit);
-  else if (y && *self->unit && strcmp(*self->unit, unit) != 0)
+  else if (y && *before && strcmp(*before, unit) != 0)
     snprintf(fault, STRUT_MESSAGE_MOST,
              "'%.60s' has another unit (%s) than the columns before it (%s)", name,
-             *unit ? unit : "none", **self->unit ? *self->unit : "none");
-  else if (y)
-    *self->unit = unit;
+             *unit ? unit : "none", **before ? *before : "none");
+  else if (x || y)
+    *before = unit;
 }
 
 /* Says what is wrong with the key, which it returns. */
@@ -193,13 +194,24 @@ static const char *judge_runs(const source *self, bool variants, char fault[STRU
   return key;
 }
 
+/* The key of limits in another unit than the column has. */
+static const char *judge_limits(const source *self, char fault[STRUT_MESSAGE_MOST]) {
+  for (int d = 0; d < 2; d++) {
+    const char *given = self->figure->limit_units[d], *unit = self->units[d] ? self->units[d] : "";
+    if (given && strcmp(given, unit) != 0)
+      return wrong(fault, d ? "y_limits" : "x_limits", "expected numbers%s%s%s, found ones in %s",
+                   *unit ? " in " : "", unit, *unit ? ", or without unit" : " without unit", given);
+  }
+  return NULL;
+}
+
 /* The key that has a fault, which it says; NULL: none. */
 static const char *check_figure(const strut_sweep_study *study, const strut_study_figure *figure,
                                 char fault[STRUT_MESSAGE_MOST]) {
   const strut_sweep_plan *plan = &study->plan;
-  const char *unit = NULL;
+  const char *units[2] = {NULL};
   const source s = {plan, figure, strut_figure_of_runs(figure), figure->kind == STRUT_FIGURE_LINES,
-                    &unit};
+                    units};
   const strut_figure_columns columns = {s.runs ? "the motion" : "the table", column_name,
                                         judge_column, &s};
   if (strut_figure_of_search(figure) && !plan->study->search)
@@ -208,6 +220,8 @@ static const char *check_figure(const strut_sweep_study *study, const strut_stud
     return wrong(fault, "kind", "it needs recorded runs: add 'trajectories: yes' to the study");
   const strut_figure_key *key = strut_figure_fault(figure, &columns, fault);
   if (key) return key->key;
+  const char *limits = judge_limits(&s, fault);
+  if (limits) return limits;
   return s.runs                           ? judge_runs(&s, study->file.variants, fault)
          : strut_figure_of_search(figure) ? NULL
                                           : judge_counts(&s, 0, fault);
@@ -267,23 +281,25 @@ strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *pa
   const strut_study *study = job->study->plan.study;
   strut_table table = {0};
   if (study->figure_count == 0) return STRUT_OK;
-  strut_status status = strut_table_read(job->arguments->listener, path, &table);
+  strut_status first = strut_table_read(job->arguments->listener, path, &table);
+  if (first) return first;
   strut_sweep_show_units(&job->study->plan, &table);
-  for (size_t i = 0; i < study->figure_count && !status; i++) {
+  for (size_t i = 0; i < study->figure_count; i++) {
     strut_error error = {0};
     if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_search.c draws it */
-    status = strut_sweep_figure(&job->study->plan, job->arguments->output, &study->figures[i],
-                                &table, job->searched, &error);
-    if (status != STRUT_USAGE) {
+    strut_status status = strut_sweep_figure(&job->study->plan, job->arguments->output,
+                                             &study->figures[i], &table, job->searched, &error);
+    if (status == STRUT_USAGE)
+      report_fault(job->study, &study->figures[i], NULL, error.message);
+    else
       strut_tell_failure(job->arguments->listener, status, &error);
-      continue;
-    }
-    report_fault(job->study, &study->figures[i], NULL, error.message);
-    status = strut_sweep_study_report(job->arguments->listener, job->study, STRUT_BAD_SCENE,
-                                      &(strut_error){0});
+    if (!first) first = status;
   }
   strut_arena_free(&table.arena);
-  return status;
+  if (!job->study->file.diagnostics.count) return first;
+  strut_sweep_study_report(job->arguments->listener, job->study, STRUT_BAD_SCENE,
+                           &(strut_error){0});
+  return first == STRUT_USAGE ? STRUT_BAD_SCENE : first;
 }
 
 /* `strut sweep` of a study that follows motions. */

@@ -100,9 +100,9 @@ const char *const *strut_sweep_words(const strut_arguments *arguments, strut_are
   const char **words =
       strut_arena_allocate(arena, 2 * (arguments->override_count + options) + 1, sizeof *words);
   for (size_t i = 0; words && i < arguments->override_count; i++) {
-    const strut_override *override = &arguments->overrides[i];
+    const strut_setting *override = &arguments->overrides[i];
     words[n++] = "--set";
-    words[n++] = strut_arena_format(arena, "%s=%s", override->name, override->value);
+    words[n++] = strut_arena_format(arena, "%s=%s", override->name, override->text);
     if (!words[n - 1]) return NULL;
   }
   for (size_t i = 0; words && i < options; i++) {
@@ -261,7 +261,7 @@ static strut_status check_copy(const char *directory, const copy *self, strut_ar
   if (stat(path, &found) != 0 || same_file(path, self->source) || holds_text(path, self->text))
     return STRUT_OK;
   if (!lies_in(directory, self->study, arena) && !lies_in(directory, self->model, arena))
-    return strut_ownership_check_path(path, error);
+    return strut_ownership_check(directory, (const char *const[]){self->name, NULL}, error);
   return strut_fail(
       error, STRUT_USAGE,
       "'%s' is the folder of the study or its model, and the copy of '%s' that is kept "
