@@ -41,6 +41,9 @@ typedef struct strut_data_table {
   const char **units; /* (unit_count, 2) of a column: its name, its unit */
 } strut_data_table;
 
+/** Numbers and weights up to this have a finite sum of squares. */
+#define STRUT_DATA_MOST_NUMBER 1e150
+
 /** Defaults of what is given. */
 #define STRUT_DATA_USUAL                                                                           \
   { .name = "", .file = "", .weights = "", .scale = 1.0, .time = -1 }

@@ -533,6 +533,7 @@ def coverage(count, align=""):
 
 def refusals():
     decay()
+    write("unseen.csv", "t [s],x [m],w\n0,1,0\n1,2,0\n")
     good = ALIKE
     for old, new, err in (
             ("one: {from", "onee: {from", "the model has no parameter 'onee'; did you mean 'one'?"),
@@ -542,8 +543,10 @@ def refusals():
             ("b.x: d.x", "b.vx: d.x", "refused.yaml:10:26: error: match 'd': 'b.vx' has another unit than its numbers"),
             ("d.x, noise: 0.1 mm", "80 mm, noise: 0.1 mm", "'d'"),
             ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{b.x: 80 mm, noise: 0.1 mm}",
-             "refused.yaml:10:15: error: 3 parameters and alignments need as many numbers, found 1"),
+             "refused.yaml:10:15: error: 3 parameters and alignments need as many numbers that count, found 1"),
             ("over:", "ower:", "did you mean 'over'"),
+            ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{compute: modes, frequncy_1: 3 Hz}", "did you mean 'frequency_1'?"),
+            ("decay.csv}", "unseen.csv, weights: w}", "need as many numbers that count, found 0"),
             ("starts: 3", "starts: 0", "starts"),
             ("data:", "lowest: 2\ndata:", "no match of the fit uses 'lowest'"),
             ("time: d.t", "time: d.x", "time")):

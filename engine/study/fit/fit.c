@@ -429,11 +429,11 @@ static bool read_row(const fitting *self, int64_t point, strut_fit_row *row) {
   return true;
 }
 
-strut_status strut_fit_add_columns(strut_sweep_plan *plan, const strut_fit_series **at,
+strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_fit_refusal *refusal,
                                    strut_error *error) {
   strut_fit_layout layout = {0};
   strut_status status = strut_fit_layout_make(plan, NULL, &layout, error);
-  *at = layout.refused;
+  *refusal = layout.refused;
   size_t most = plan->axis_columns + WORDS + NUMBERS + layout.aligned_count;
   strut_slot_column *all = status ? NULL : strut_arena_allocate(&plan->arena, most, sizeof *all);
   bool fine = all != NULL;

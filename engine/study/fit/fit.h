@@ -99,11 +99,17 @@ typedef struct strut_fit_result {
   strut_arena arena;
 } strut_fit_result;
 
+/** A series that does not fit the model, or NULL; and the table that its match has, or nothing. */
+typedef struct strut_fit_refusal {
+  const strut_fit_series *series;
+  strut_sweep_plan table;
+} strut_fit_refusal;
+
 /**
- * Replaces the columns that are kept by those of a fit. STRUT_BAD_SCENE with what does not fit the model; *at is the
- * series that does not, or NULL.
+ * Replaces the columns that are kept by those of a fit. STRUT_BAD_SCENE with what does not fit the model, whose table
+ * the caller frees.
  */
-STRUT_API strut_status strut_fit_add_columns(strut_sweep_plan *plan, const strut_fit_series **at,
+STRUT_API strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_fit_refusal *refusal,
                                              strut_error *error);
 /** As strut_sweep_run. The result is complete on STRUT_OK; release it with strut_fit_result_free in any case. */
 STRUT_API strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,

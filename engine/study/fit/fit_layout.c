@@ -33,9 +33,27 @@ static int axis_of(const strut_quantity_definition *quantity, strut_column *plac
 static strut_status refuse(strut_fit_layout *layout, size_t m, size_t s, const char *why,
                            strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  layout->refused = &match->series[s];
+  layout->refused = (strut_fit_refusal){&match->series[s], layout->parts[m].table};
+  layout->parts[m].table = (strut_sweep_plan){0};
   return strut_fail(error, STRUT_BAD_SCENE, "match '%.60s': '%.80s' %s", match->name,
-                    layout->refused->of, why);
+                    match->series[s].of, why);
+}
+
+/* Why a series does not fit the model; NULL: it does. `column`: its number among those of a TABLE. */
+static const char *find_flaw(const strut_fit_layout *layout, size_t m, size_t s,
+                             const strut_setup *setup, int64_t column) {
+  const strut_fit_match *match = &layout->fit->matches[m];
+  const char *over = layout->plan->study->path.over;
+  bool curve = match->kind == STRUT_FIT_CURVE;
+  if (match->kind == STRUT_FIT_TABLE)
+    return column < 0 ? "is no column of numbers of that computation" : NULL;
+  if (curve && !setup->experiment.stage_count &&
+      !(over && strut_coordinate_find(&setup->scene, over) >= 0))
+    return "needs the study's 'path' over a coordinate, such as {over: b.y, until: 5 mm} for "
+           "displacements up to 5 mm";
+  const char *unit =
+      curve ? "N" : strut_fit_quantity(&setup->experiment, match->series[s].of)->unit;
+  return strcmp(unit, match->series[s].unit) == 0 ? NULL : "has another unit than its numbers";
 }
 
 /* What the series of a match are in the model. */
@@ -49,34 +67,19 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     return strut_no_memory(error, "");
   layout->parts[m].sources = sources;
   for (size_t s = 0; s < match->series_count; s++) {
-    const strut_quantity_definition *quantity =
-        strut_fit_quantity(&setup->experiment, match->series[s].of);
+    const strut_fit_series *series = &match->series[s];
     bool moves = match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST;
-    int64_t column = match->kind == STRUT_FIT_TABLE
-                         ? find_number(&layout->parts[m].table, match->series[s].of)
-                         : 0;
-    if (column < 0)
-      return refuse(layout, m, s, "is no column of numbers of that computation", error);
-    bool follows = match->kind != STRUT_FIT_CURVE || setup->experiment.stage_count ||
-                   (layout->plan->study->path.over &&
-                    strut_coordinate_find(&setup->scene, layout->plan->study->path.over) >= 0);
-    if (!follows)
-      return refuse(layout, m, s,
-                    "needs the study's 'path' over a coordinate, such as {over: b.y, until: 5 mm} "
-                    "for displacements up to 5 mm",
-                    error);
-    const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
-    if (unit && strcmp(unit, match->series[s].unit) != 0)
-      return refuse(layout, m, s, "has another unit than its numbers", error);
-    sources[s] = (strut_fit_source){.partner = -1, .column = (size_t)column};
-    sources[s].axis = moves ? axis_of(quantity, &places[s]) : -1;
+    int64_t column = find_number(&layout->parts[m].table, series->of);
+    const char *flaw = find_flaw(layout, m, s, setup, column);
+    if (flaw) return refuse(layout, m, s, flaw, error);
+    sources[s] = (strut_fit_source){-1, -1, (size_t)column};
+    if (moves)
+      sources[s].axis = axis_of(strut_fit_quantity(&setup->experiment, series->of), &places[s]);
     for (size_t k = 0; k < s && sources[s].axis >= 0; k++)
       if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
           places[k].item == places[s].item)
         sources[s].partner = (int32_t)k, sources[k].partner = (int32_t)s;
-    memcpy(layout->measured + layout->count, match->series[s].measured,
-           match->count * sizeof(double));
-    layout->count += match->count;
+    memcpy(layout->measured + series->first, series->measured, match->count * sizeof(double));
   }
   for (size_t s = 0; s < match->series_count && match->align.rotate; s++)
     if (sources[s].axis >= 0 && sources[s].partner < 0)
@@ -182,35 +185,39 @@ static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
   return status;
 }
 
+/* There must be as many numbers that count as parameters. */
+static strut_status check_count(strut_fit_layout *layout, strut_error *error) {
+  strut_fit_case all;
+  bool fine = strut_fit_case_create(layout, &all);
+  strut_fit_case_free(&all);
+  if (!fine) return strut_no_memory(error, "");
+  if (all.used >= layout->parameters) return STRUT_OK;
+  layout->refused.series = layout->fit->matches[0].series;
+  return strut_fail(error, STRUT_BAD_SCENE,
+                    "%zu parameters and alignments need as many numbers that count, found %zu",
+                    layout->parameters, all.used);
+}
+
 strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_flag *interrupt,
                                    strut_fit_layout *layout, strut_error *error) {
   const strut_study_fit *fit = plan->study->fit;
-  size_t count = 0;
   *layout =
       (strut_fit_layout){.plan = plan, .fit = fit, .interrupt = interrupt, .noise_known = true};
   for (size_t m = 0; m < fit->match_count; m++)
-    count += fit->matches[m].count * fit->matches[m].series_count;
+    layout->count += fit->matches[m].count * fit->matches[m].series_count;
   size_t most = STRUT_FIT_ALIGNS_COUNT * fit->match_count, all = most + fit->variable_count;
   layout->standing = strut_equilibrium_cache_create();
   if (!layout->standing ||
       !STRUT_ALLOCATE(&layout->arena, STRUT_NEW(layout->aligned, most),
                       STRUT_NEW(layout->parts, fit->match_count),
-                      STRUT_NEW(layout->measured, count), STRUT_NEW(layout->low, all),
+                      STRUT_NEW(layout->measured, layout->count), STRUT_NEW(layout->low, all),
                       STRUT_NEW(layout->high, all)))
     return strut_no_memory(error, "");
   strut_status status = find_all(layout, error);
   layout->parameters = layout->aligned_count + fit->variable_count;
-  for (size_t k = count; k-- > 0;)
-    if (isnan(layout->measured[k])) count--;
-  if (!status && count < layout->parameters) {
-    layout->refused = fit->matches[0].series;
-    status = strut_fail(error, STRUT_BAD_SCENE,
-                        "%zu parameters and alignments need as many numbers, found %zu",
-                        layout->parameters, count);
-  }
   for (size_t i = layout->aligned_count; i < layout->parameters; i++)
     layout->low[i] = 1.0, layout->high[i] = 2.0;
-  return status;
+  return status ? status : check_count(layout, error);
 }
 
 void strut_fit_layout_free(strut_fit_layout *layout) {

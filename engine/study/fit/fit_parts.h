@@ -62,7 +62,7 @@ typedef struct strut_fit_layout {
   double *low, *high; /* (parameters) the box */
   strut_equilibrium_cache *standing;
   const strut_flag *interrupt;
-  const strut_fit_series *refused; /* it does not fit the model; or NULL */
+  strut_fit_refusal refused;
   strut_arena arena;
 } strut_fit_layout;
 

@@ -310,7 +310,7 @@
   X(MATCH, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Column of the forces at these displacements.") \
   X(MATCH, COMPUTE, "compute", WORD, NONE, ANY, "", OPTIONAL, 0, "run|equilibria|modes|rigidity|path|form", FIELD(strut_fit_match, compute), "What is compared are columns of the table of a study that computes this: `frequency_1: 12.5 Hz`.") \
   X(MATCH, NOISE, "noise", NUMBER, CONTEXT, ANY, "not known", OPTIONAL, 0, "", NONE, "Standard deviation of the numbers. Without it, it follows from the residuals, which then cannot tell whether the model is right.") \
-  X(MATCH, ALIGN, "align", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(ALIGN), "What else may move the model onto the numbers.") \
+  X(MATCH, ALIGN, "align", MAP, NONE, ANY, "", OPTIONAL, 0, "", SELF(strut_fit_match, ALIGN), "What else may move the model onto the numbers.") \
   X(MATCH, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "a value", NONE, "Values of other parameters in this match, such as the drive of a film. What one match sets, all must set.")
 
 #define STRUT_ALIGN_KEYS(X) \

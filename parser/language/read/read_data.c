@@ -299,11 +299,13 @@ static bool find_weights(loader *self) {
     if (!is_called(by, table->weights)) continue;
     double *values = (double *)(uintptr_t)by->values;
     size_t k = values ? 0 : by->flaw;
-    for (; values && k < table->row_count && !(values[k] < 0.0); k++)
+    for (;
+         values && k < table->row_count && !(values[k] < 0.0 || values[k] > STRUT_DATA_MOST_NUMBER);
+         k++)
       if (isnan(values[k])) values[k] = 0.0;
     if (k < table->row_count)
       return strut_refuse_data(self->reader, value_of(self, STRUT_KEY_DATA_WEIGHTS), table, by, k,
-                               "expected weights, numbers that are not negative");
+                               "expected weights, numbers from 0 to 1e150");
     for (size_t c = 0; c < table->column_count; c++)
       if (is_weighted(&self->columns[c], by, table->weights)) self->columns[c].weights = values;
   }

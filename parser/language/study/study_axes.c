@@ -8,7 +8,7 @@
 typedef strut_study_along along;
 
 static strut_owner owner_of(const along *self) {
-  return (strut_owner){"axis", self->parameter->name};
+  return (strut_owner){self->of ? "variable" : "axis", self->parameter->name};
 }
 
 bool strut_study_read_value(strut_study_reader *study_reader, along *self, const strut_tree *value,

@@ -8,19 +8,18 @@
 
 static const strut_owner fit_owner = {"the fit", NULL};
 
-/* Numbers and weights up to this have a finite sum of squares. */
-static const double MOST_NUMBER = 1e150;
 /* How often a run may be as long as the model's own, and how often it is usually. */
 static const double MOST = 1e7, USUAL = 100.0;
 
 /* A match while it is read. */
 typedef struct reading {
+  strut_study_reader *study;
+  strut_reader *reader;
   strut_fit_match *to;
   strut_owner owner;
-  strut_fields fields; /* of its own keys */
-  strut_tree own;      /* a mapping of these */
-  strut_tree rest;     /* and one of what is compared */
-  const strut_data_table *table;
+  strut_fields fields;           /* of its own keys */
+  const strut_tree *rest;        /* a mapping of what is compared */
+  const strut_data_table *table; /* of all its numbers; NULL: they are single ones */
 } reading;
 
 /* ---- parameters ---- */
@@ -46,152 +45,6 @@ static const char *match_key(const void *context, size_t i) {
                                                              : NULL;
 }
 
-/* Is a key the match's own, perhaps misspelt? What is compared has a column or a number, and another name. */
-static bool is_own(const strut_reader *reader, const strut_tree *key) {
-  const strut_data_table *table;
-  if (strut_key_find(STRUT_SECTION_MATCH, key->text) >= 0) return true;
-  if (key->next->kind != STRUT_TREE_SCALAR) return true;
-  return !strchr(key->text, '.') && strut_did_you_mean(key->text, match_key, NULL) &&
-         !strut_data_find(reader->tables, reader->table_count, key->next->text, &table);
-}
-
-/* Divides the mapping of a match into its own keys and the others. */
-static bool divide(strut_study_reader *reader, const strut_tree *map, reading *self) {
-  strut_tree *items = strut_reader_allocate(reader->reader, &reader->reader->scratch,
-                                            2 * (size_t)map->count + 1, sizeof *items);
-  strut_tree **ends[] = {&self->own.first, &self->rest.first};
-  if (!items) return false;
-  self->own = self->rest = *map;
-  self->own.first = self->rest.first = NULL;
-  self->own.count = self->rest.count = 0;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
-    bool own = is_own(reader->reader, key);
-    items[0] = *key, items[1] = *key->next;
-    items[0].next = &items[1], items[1].next = NULL;
-    *ends[!own] = items;
-    ends[!own] = &items[1].next;
-    (own ? &self->own : &self->rest)->count++;
-    items += 2;
-  }
-  return true;
-}
-
-/* The column behind one of the match's own keys, all of the same table. */
-static const double *read_at(strut_study_reader *reader, reading *self, int key,
-                             strut_dimension dimension, bool ascending) {
-  strut_reader *r = reader->reader;
-  const strut_slot *slot = strut_slot_of(&self->fields, key);
-  const strut_data_table *table;
-  if (slot->state != STRUT_GIVEN) return NULL;
-  const strut_data_column *column =
-      strut_read_data_column(r, slot->value, slot->key->text, self->owner, &dimension, &table);
-  if (!column) return NULL;
-  const char *flaw = NULL;
-  size_t rows = table->row_count, i = 0;
-  for (const double *at = column->values; i < rows && !flaw; i++)
-    flaw = !isfinite(at[i])                         ? "a number is missing"
-           : ascending && i && !(at[i] > at[i - 1]) ? "times must ascend"
-           : ascending && rows < 2                  ? "a motion needs two times or more"
-                                                    : NULL;
-  if (flaw) strut_refuse_data(r, slot->value, table, column, i - 1, flaw);
-  if (flaw) return NULL;
-  self->table = table;
-  self->to->count = table->row_count;
-  return column->values;
-}
-
-static bool set_noise_unit(strut_study_reader *reader, reading *self, const strut_tree *value,
-                           const char *unit) {
-  const strut_slot *noise = strut_slot_of(&self->fields, STRUT_KEY_MATCH_NOISE);
-  strut_quantity q;
-  if (noise->state != STRUT_GIVEN) {
-    self->to->noise_unit = unit;
-    return true;
-  }
-  if (!self->to->noise_unit) {
-    if (!strut_read_quantity(reader->reader, noise->value, "noise", self->owner, &q)) return false;
-    self->to->noise = q.value;
-    self->to->noise_unit = q.bare ? unit : strut_dimension_unit(q.dimension);
-    if (!(q.value > 0.0))
-      return strut_report_error(reader->reader, noise->value->place,
-                                "'noise' of match '%s' must be above 0", self->to->name);
-  }
-  return strcmp(self->to->noise_unit, unit) == 0 ||
-         strut_report_error(reader->reader, value->place,
-                            "'noise' of match '%s' is in %s, this in %s: give numbers of another "
-                            "dimension a match of their own",
-                            self->to->name, self->to->noise_unit, unit);
-}
-
-/* A number of its own, or a column of the match's table, or of any table where it has none. */
-static bool read_numbers(strut_study_reader *reader, reading *self, const strut_tree *value,
-                         strut_fit_series *series) {
-  strut_reader *r = reader->reader;
-  strut_quantity q;
-  const strut_data_table *table;
-  bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted &&
-               strpbrk(value->text, "0123456789+-") == value->text;
-  if (plain && !self->to->at) {
-    double *number = strut_study_allocate(reader, 1, sizeof *number);
-    if (!number || !strut_read_quantity(r, value, series->of, self->owner, &q)) return false;
-    if (self->table)
-      return strut_report_error(r, value->place,
-                                "match '%s' has columns of '%s': put single numbers "
-                                "into a match of their own",
-                                self->to->name, self->table->name);
-    *number = q.value;
-    series->measured = number;
-    series->unit = q.bare ? "1" : strut_dimension_unit(q.dimension);
-    self->to->count = 1;
-    return true;
-  }
-  const strut_data_column *column =
-      strut_read_data_column(r, value, series->of, self->owner, NULL, &table);
-  if (!column) return false;
-  if (self->table && table != self->table)
-    return strut_report_error(r, value->place,
-                              "match '%s' compares columns of '%s': '%s' needs a "
-                              "match of its own",
-                              self->to->name, self->table->name, table->name);
-  self->table = table;
-  self->to->count = table->row_count;
-  series->measured = column->values;
-  series->weights = column->weights;
-  series->unit = strcmp(column->unit, "1") == 0 ? "1" : strut_dimension_unit(column->dimension);
-  if (column->gap_count == table->row_count)
-    return strut_refuse_data(r, value, table, column, 0, "there are no numbers");
-  return true;
-}
-
-/* Reports a number of a series, in its cell where it has one. */
-static bool refuse_number(strut_study_reader *reader, const reading *self, const strut_tree *value,
-                          const double *numbers, size_t row, const char *message) {
-  const strut_data_table *table = self->table;
-  for (size_t i = 0; table && i < table->column_count; i++)
-    if (table->columns[i].values == numbers)
-      return strut_refuse_data(reader->reader, value, table, &table->columns[i], row, message);
-  return strut_report_error(reader->reader, value->place, "%s", message);
-}
-
-/* Squares of residuals must not overflow, and some must count. */
-static bool check_numbers(strut_study_reader *reader, const reading *self, const strut_tree *value,
-                          const strut_fit_series *series) {
-  bool counts = false;
-  double noise = self->to->noise > 0.0 ? self->to->noise : 1.0;
-  for (size_t i = 0; i < self->to->count; i++) {
-    double weight = series->weights ? series->weights[i] : 1.0;
-    if (fabs(series->measured[i]) > MOST_NUMBER * fmin(noise, 1.0))
-      return refuse_number(reader, self, value, series->measured, i,
-                           "a number this large has no finite square in the sum of a fit");
-    if (weight > MOST_NUMBER)
-      return refuse_number(reader, self, value, series->weights, i,
-                           "a weight this large has no finite product in the sum of a fit");
-    counts = counts || (weight > 0.0 && !isnan(series->measured[i]));
-  }
-  return counts || refuse_number(reader, self, value, series->weights, 0,
-                                 "no number of this match has a weight above 0");
-}
-
 /* Does the model itself measure a quantity of that name? */
 static bool is_measured(const strut_study_file *file, const char *name) {
   const char *const keys[] = {"run", "measure", "quantities", name};
@@ -201,124 +54,237 @@ static bool is_measured(const strut_study_file *file, const char *name) {
   return at != NULL;
 }
 
-static bool add_series(strut_study_reader *reader, reading *self, const strut_tree *key) {
-  strut_fit_series *series = &self->to->series[self->to->series_count];
-  *series = (strut_fit_series){.of = key->text, .place = {key->place.line, key->place.column}};
-  if (!read_numbers(reader, self, key->next, series) ||
-      !set_noise_unit(reader, self, key->next, series->unit) ||
-      !check_numbers(reader, self, key->next, series))
-    return false;
-  self->to->series_count++;
-  bool moves = self->to->kind == STRUT_FIT_MOTION || self->to->kind == STRUT_FIT_REST;
-  if (moves && !is_measured(reader->file, key->text) && !strut_study_measure(reader->file, key))
-    reader->reader->out_of_memory = true;
+/* Is a key the match's own, perhaps misspelt? What is compared has a column or a number, and another name. */
+static bool is_own(const reading *self, const strut_tree *key) {
+  if (strut_key_find(STRUT_SECTION_MATCH, key->text) >= 0) return true;
+  if (key->next->kind != STRUT_TREE_SCALAR) return true;
+  return !strchr(key->text, '.') && !is_measured(self->study->file, key->text) &&
+         strut_did_you_mean(key->text, match_key, NULL);
+}
+
+/* Reads the match's own keys, and keeps the others in `rest`, which is NULL where there is no mapping. */
+static void divide(reading *self, const strut_tree *map) {
+  strut_arena *arena = &self->reader->scratch;
+  strut_tree_builder own = strut_tree_begin(arena, map), rest = own;
+  bool given = map->kind == STRUT_TREE_MAP;
+  if (given) rest = strut_tree_begin(arena, map);
+  for (const strut_tree *key = map->first; given && key; key = key->next->next)
+    if (!strut_tree_share(is_own(self, key) ? &own : &rest, arena, key, key->next))
+      self->reader->out_of_memory = true;
+  strut_read_object(self->reader, STRUT_SECTION_MATCH, given && own.map ? own.map : map,
+                    self->owner, &self->fields, self->to);
+  self->rest = given ? rest.map : NULL;
+}
+
+/* All numbers of a match are columns of one table, or single ones (NULL). */
+static bool keep_table(reading *self, const strut_tree *value, const strut_data_table *table) {
+  if (self->to->count && table != self->table)
+    return strut_report_error(self->reader, value->place,
+                              "match '%s' has %s%s%s: give other numbers a match of their own",
+                              self->to->name, self->table ? "columns of '" : "single numbers",
+                              self->table ? self->table->name : "", self->table ? "'" : "");
+  self->table = table;
+  self->to->count = table ? table->row_count : 1;
   return true;
 }
 
-/* The other coordinate of the place of a series, which was not measured but turns with it. */
-static void add_partner(strut_study_reader *reader, reading *self, const strut_tree *key,
-                        const double *gaps) {
+static const strut_data_column *read_column(reading *self, const strut_tree *value, const char *key,
+                                            const strut_dimension *dimension) {
+  const strut_data_table *table;
+  const strut_data_column *column =
+      strut_read_data_column(self->reader, value, key, self->owner, dimension, &table);
+  return column && keep_table(self, value, table) ? column : NULL;
+}
+
+/* The column behind one of the match's own keys, without gaps. */
+static const double *read_at(reading *self, int key, strut_dimension dimension, bool ascending) {
+  const strut_slot *slot = strut_slot_of(&self->fields, key);
+  const strut_data_column *column =
+      slot->state == STRUT_GIVEN ? read_column(self, slot->value, slot->key->text, &dimension)
+                                 : NULL;
+  const char *flaw = NULL;
+  size_t i = 0;
+  for (; column && i < self->to->count && !flaw; i++)
+    flaw = !isfinite(column->values[i])                        ? "a number is missing"
+           : !ascending                                        ? NULL
+           : i && !(column->values[i] > column->values[i - 1]) ? "times must ascend"
+           : self->to->count < 2                               ? "a motion needs two times or more"
+                                                               : NULL;
+  if (flaw) strut_refuse_data(self->reader, slot->value, self->table, column, i - 1, flaw);
+  return column && !flaw ? column->values : NULL;
+}
+
+static void read_noise(reading *self) {
+  const strut_slot *slot = strut_slot_of(&self->fields, STRUT_KEY_MATCH_NOISE);
+  strut_quantity q;
+  if (slot->state != STRUT_GIVEN ||
+      !strut_read_quantity(self->reader, slot->value, "noise", self->owner, &q))
+    return;
+  self->to->noise = q.value;
+  if (!q.bare) self->to->noise_unit = strut_dimension_unit(q.dimension);
+  if (!(q.value > 0.0))
+    strut_report_error(self->reader, slot->value->place, "'noise' of match '%s' must be above 0",
+                       self->to->name);
+}
+
+/* A noise without unit is in that of the numbers, which must have one in common. */
+static bool check_noise(reading *self, const strut_tree *value, const char *unit) {
   strut_fit_match *to = self->to;
-  size_t length = strlen(key->text);
-  char last = length > 2 && key->text[length - 2] == '.' ? key->text[length - 1] : '\0';
-  if (last != 'x' && last != 'y') return;
-  char *text = strut_arena_text(&reader->file->arena, key->text, length);
-  if (!text) return;
-  text[length - 1] = last == 'x' ? 'y' : 'x';
-  for (size_t s = 0; s < to->series_count; s++)
-    if (strcmp(to->series[s].of, text) == 0) return;
-  strut_tree other = *key;
-  other.text = text;
-  to->series[to->series_count++] = (strut_fit_series){.of = text,
-                                                      .place = {key->place.line, key->place.column},
-                                                      .unit = "m",
-                                                      .measured = gaps,
-                                                      .empty = true};
-  if (!strut_study_measure(reader->file, &other)) reader->reader->out_of_memory = true;
+  if (!to->noise_unit) to->noise_unit = unit;
+  return !(to->noise > 0.0) || strcmp(to->noise_unit, unit) == 0 ||
+         strut_report_error(self->reader, value->place,
+                            "'noise' of match '%s' is in %s, this in %s: give numbers of another "
+                            "dimension a match of their own",
+                            to->name, to->noise_unit, unit);
 }
 
-static void add_partners(strut_study_reader *reader, reading *self) {
-  double *gaps = strut_study_allocate(reader, self->to->count, sizeof *gaps);
-  for (size_t i = 0; gaps && i < self->to->count; i++) gaps[i] = (double)NAN;
-  for (const strut_tree *key = self->rest.first; key && gaps; key = key->next->next)
-    add_partner(reader, self, key, gaps);
+/* A number of its own. */
+static bool read_number(reading *self, const strut_tree *value, strut_fit_series *series) {
+  strut_quantity q;
+  double *number = strut_study_allocate(self->study, 1, sizeof *number);
+  if (!number || !strut_read_quantity(self->reader, value, series->of, self->owner, &q) ||
+      !keep_table(self, value, NULL))
+    return false;
+  *number = q.value;
+  series->measured = number;
+  series->unit = q.bare ? "1" : strut_dimension_unit(q.dimension);
+  return true;
 }
 
-static void read_curve(strut_study_reader *reader, reading *self) {
-  const strut_slot *force = strut_slot_of(&self->fields, STRUT_KEY_MATCH_FORCE);
-  self->to->at = read_at(reader, self, STRUT_KEY_MATCH_DISPLACEMENT, STRUT_DIM_LENGTH, false);
-  if (force->state != STRUT_GIVEN)
-    strut_report_error(reader->reader, self->own.place,
-                       "match '%s' of a displacement lacks 'force'", self->to->name);
-  else if (self->to->at)
-    add_series(reader, self, force->key);
+/* A number, or a column of the match's table. */
+static bool read_numbers(reading *self, const strut_tree *value, strut_fit_series *series) {
+  bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted &&
+               strpbrk(value->text, "0123456789+-") == value->text;
+  if (plain && !self->to->at) return read_number(self, value, series);
+  const strut_data_column *column = series->column = read_column(self, value, series->of, NULL);
+  if (!column) return false;
+  series->measured = column->values;
+  series->weights = column->weights;
+  series->unit = strcmp(column->unit, "1") == 0 ? "1" : strut_dimension_unit(column->dimension);
+  return column->gap_count < self->to->count ||
+         strut_refuse_data(self->reader, value, self->table, column, 0, "there are no numbers");
+}
+
+/* Squares of residuals must not overflow. */
+static bool check_numbers(reading *self, const strut_tree *value, const strut_fit_series *series) {
+  static const char flaw[] = "a number this large has no finite square in the sum of a fit";
+  double noise = self->to->noise > 0.0 ? fmin(self->to->noise, 1.0) : 1.0;
+  for (size_t i = 0; i < self->to->count; i++)
+    if (fabs(series->measured[i]) > STRUT_DATA_MOST_NUMBER * noise)
+      return series->column
+                 ? strut_refuse_data(self->reader, value, self->table, series->column, i, flaw)
+                 : strut_report_error(self->reader, value->place, flaw);
+  return true;
+}
+
+static void add_series(reading *self, const strut_tree *key) {
+  strut_fit_match *to = self->to;
+  strut_fit_series *series = &to->series[to->series_count];
+  *series = (strut_fit_series){.of = key->text, .place = {key->place.line, key->place.column}};
+  if (!read_numbers(self, key->next, series) || !check_noise(self, key->next, series->unit) ||
+      !check_numbers(self, key->next, series))
+    return;
+  to->series_count++;
+  bool moves = to->kind == STRUT_FIT_MOTION || to->kind == STRUT_FIT_REST;
+  strut_study_file *file = self->study->file;
+  if (moves && !is_measured(file, key->text) && !strut_study_measure(file, key))
+    self->reader->out_of_memory = true;
+}
+
+/* The other coordinates of places, which were not measured but turn with those that were. */
+static void add_partners(reading *self) {
+  strut_fit_match *to = self->to;
+  double *gaps = strut_study_allocate(self->study, to->count, sizeof *gaps);
+  for (size_t i = 0; gaps && i < to->count; i++) gaps[i] = (double)NAN;
+  for (const strut_tree *key = self->rest->first; key && gaps; key = key->next->next) {
+    size_t length = strlen(key->text);
+    char *text = strut_arena_text(&self->study->file->arena, key->text, length);
+    char axis = text && length > 2 && text[length - 2] == '.' ? text[length - 1] : '\0';
+    if (axis != 'x' && axis != 'y') continue;
+    text[length - 1] = axis == 'x' ? 'y' : 'x';
+    if (strut_tree_find(self->rest, text, NULL)) continue;
+    strut_tree other = *key;
+    other.text = text;
+    to->series[to->series_count++] =
+        (strut_fit_series){.of = text,
+                           .place = {key->place.line, key->place.column},
+                           .unit = "m",
+                           .measured = gaps,
+                           .empty = true};
+    if (!strut_study_measure(self->study->file, &other)) self->reader->out_of_memory = true;
+  }
 }
 
 /* What kind of match it is, by the keys that it has. */
-static void choose_kind(strut_study_reader *reader, reading *self) {
-  strut_fields fields;
-  bool over_time = strut_slot_of(&self->fields, STRUT_KEY_MATCH_TIME)->state != STRUT_ABSENT;
-  bool curve = strut_slot_of(&self->fields, STRUT_KEY_MATCH_DISPLACEMENT)->state != STRUT_ABSENT;
-  bool table = strut_slot_of(&self->fields, STRUT_KEY_MATCH_COMPUTE)->state != STRUT_ABSENT;
+static void choose_kind(reading *self) {
+  strut_fit_match *to = self->to;
+  bool over_time = strut_mentions(&self->fields, STRUT_KEY_MATCH_TIME);
+  bool curve = strut_mentions(&self->fields, STRUT_KEY_MATCH_DISPLACEMENT);
+  bool table = strut_mentions(&self->fields, STRUT_KEY_MATCH_COMPUTE);
   const strut_slot *align = strut_slot_of(&self->fields, STRUT_KEY_MATCH_ALIGN);
-  self->to->kind = over_time ? STRUT_FIT_MOTION
-                   : curve   ? STRUT_FIT_CURVE
-                   : table   ? STRUT_FIT_TABLE
-                             : STRUT_FIT_REST;
-  if (curve) self->to->compute = STRUT_COMPUTE_PATH;
-  if (align->state == STRUT_GIVEN)
-    strut_read_object(reader->reader, STRUT_SECTION_ALIGN, align->value, self->owner, &fields,
-                      self->to);
+  to->kind = over_time ? STRUT_FIT_MOTION
+             : curve   ? STRUT_FIT_CURVE
+             : table   ? STRUT_FIT_TABLE
+                       : STRUT_FIT_REST;
+  if (curve) to->compute = STRUT_COMPUTE_PATH;
   if (over_time + curve + table > 1)
-    strut_report_error(reader->reader, self->own.place,
+    strut_report_error(self->reader, self->rest->place,
                        "match '%s' can have only one of 'time', 'displacement' and 'compute'",
-                       self->to->name);
+                       to->name);
   if (align->state == STRUT_GIVEN && (curve || table))
-    strut_report_error(reader->reader, align->key->place,
-                       "'align' of match '%s' is for motions and shapes", self->to->name);
-  if (self->to->align.delay && !over_time)
-    strut_report_error(reader->reader, align->value->place, "a delay needs the 'time' of a motion");
+    strut_report_error(self->reader, align->key->place,
+                       "'align' of match '%s' is for motions and shapes", to->name);
+  if (to->align.delay && !over_time)
+    strut_report_error(self->reader, align->value->place, "a delay needs the 'time' of a motion");
 }
 
-static void read_match(strut_study_reader *reader, const strut_tree *key, strut_fit_match *to) {
-  reading self = {.to = to, .owner = {"match", key->text}};
-  strut_reader *r = reader->reader;
+/* The times or displacements of a match. False: what should be there is not. */
+static bool read_axis(reading *self) {
+  strut_fit_match *to = self->to;
+  if (to->kind == STRUT_FIT_CURVE)
+    to->at = read_at(self, STRUT_KEY_MATCH_DISPLACEMENT, STRUT_DIM_LENGTH, false);
+  if (to->kind == STRUT_FIT_MOTION)
+    to->at = read_at(self, STRUT_KEY_MATCH_TIME, STRUT_DIM_TIME, true);
+  if (to->kind == STRUT_FIT_MOTION && to->at && to->at[0] < 0.0 && !to->align.delay)
+    return strut_report_error(
+        self->reader, strut_slot_of(&self->fields, STRUT_KEY_MATCH_TIME)->value->place,
+        "the times of match '%s' begin before 0, where the run starts: let 'align' have 'delay: "
+        "free'",
+        to->name);
+  return to->at || to->kind == STRUT_FIT_TABLE || to->kind == STRUT_FIT_REST;
+}
+
+/* Returns the mapping of what it sets, or NULL. */
+static const strut_tree *read_match(strut_study_reader *study, const strut_tree *key,
+                                    strut_fit_match *to) {
+  strut_reader *r = study->reader;
+  reading self = {.study = study, .reader = r, .to = to, .owner = {"match", key->text}};
   strut_read_name(r, key, "match");
   *to = (strut_fit_match){.name = key->text};
-  if (key->next->kind != STRUT_TREE_MAP) {
-    strut_report_error(r, key->next->place,
-                       "expected a mapping such as {time: film.t, n1.x: film.x} "
-                       "for match '%s', found %s",
-                       key->text, strut_found(r, key->next));
-    return;
-  }
-  if (!divide(reader, key->next, &self)) return;
-  strut_read_object(r, STRUT_SECTION_MATCH, &self.own, self.owner, &self.fields, to);
-  choose_kind(reader, &self);
-  to->series = strut_study_allocate(reader, 2 * (size_t)self.rest.count + 1, sizeof *to->series);
-  if (!to->series) return;
-  if (to->kind == STRUT_FIT_CURVE) read_curve(reader, &self);
-  if (to->kind == STRUT_FIT_MOTION)
-    to->at = read_at(reader, &self, STRUT_KEY_MATCH_TIME, STRUT_DIM_TIME, true);
-  if (to->kind == STRUT_FIT_MOTION && !to->at) return;
-  if (to->kind == STRUT_FIT_MOTION && to->at[0] < 0.0 && !to->align.delay)
-    strut_report_error(r, strut_slot_of(&self.fields, STRUT_KEY_MATCH_TIME)->value->place,
-                       "the times of match '%s' begin before 0, where the run starts: let 'align' "
-                       "have 'delay: free'",
-                       to->name);
-  const strut_tree *first = self.rest.first;
-  if (to->kind == STRUT_FIT_CURVE && first)
+  divide(&self, key->next);
+  if (!self.rest) return NULL;
+  const strut_tree *first = self.rest->first;
+  const strut_slot *force = strut_slot_of(&self.fields, STRUT_KEY_MATCH_FORCE);
+  to->series = strut_study_allocate(study, 2 * (size_t)self.rest->count + 1, sizeof *to->series);
+  choose_kind(&self);
+  read_noise(&self);
+  bool curve = to->kind == STRUT_FIT_CURVE;
+  if (curve && force->state == STRUT_ABSENT)
+    strut_report_error(r, key->place, "match '%s' of a displacement lacks 'force'", to->name);
+  if (curve && first)
     strut_report_error(r, first->place,
                        "a match of a displacement compares its 'force' alone, not '%s'",
                        strut_sanitised_text(r, first->text));
-  for (; first && to->kind != STRUT_FIT_CURVE; first = first->next->next)
-    add_series(reader, &self, first);
-  if (to->align.rotate && to->series_count) add_partners(reader, &self);
-  if (!self.rest.count && to->kind != STRUT_FIT_CURVE)
+  if (!curve && !first)
     strut_report_error(r, key->place,
                        "match '%s' compares nothing: add what the model has, such as "
                        "'n1.x: film.x'",
                        key->text);
+  if (!to->series || !read_axis(&self)) return NULL;
+  if (curve && force->state == STRUT_GIVEN) add_series(&self, force->key);
+  for (; first && !curve; first = first->next->next) add_series(&self, first);
+  if (to->align.rotate && to->series_count) add_partners(&self);
+  return strut_given(&self.fields, STRUT_KEY_MATCH_SET);
 }
 
 /* ---- what matches set ---- */
@@ -380,14 +346,17 @@ static void add_rows(strut_study_reader *reader, strut_study_fit *fit, size_t va
   fit->beside_count = variables;
   for (size_t m = 0; m < fit->match_count; m++) fit->beside_count += fit->matches[m].align.delay;
   fit->omission_count = fit->match_count > 1 ? fit->match_count : 0;
-  size_t count = (size_t)fit->starts + STRUT_FIT_ROUNDS * fit->beside_count + 2 * variables +
-                 fit->omission_count;
-  double *numbers = strut_study_allocate(reader, count, sizeof *numbers);
-  *axis = (strut_study_axis){.count = numbers ? (int64_t)count : 1, .column_count = 1};
+  *axis = (strut_study_axis){.count = fit->starts + STRUT_FIT_ROUNDS * (int64_t)fit->beside_count +
+                                      2 * (int64_t)variables + (int64_t)fit->omission_count,
+                             .column_count = 1};
   axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
-  for (size_t i = 0; i < count && numbers; i++) numbers[i] = (double)(i + 1);
   if (axis->columns)
-    axis->columns[0] = (strut_study_column){.name = "fit", .unit = "1", .number = numbers};
+    axis->columns[0] = (strut_study_column){.name = "fit",
+                                            .unit = "1",
+                                            .kind = STRUT_RANGE_STEP,
+                                            .from = 1.0,
+                                            .to = (double)axis->count,
+                                            .step = 1.0};
   reader->file->column_count++; /* a setting without a name: no parameter */
 }
 
@@ -422,47 +391,37 @@ static void refuse_twice(strut_study_reader *reader, const strut_fit_match *a,
     }
 }
 
-/* The first values of all axes. */
-static strut_study_value *first_values(strut_study_reader *reader) {
-  const strut_study *study = &reader->file->study;
-  strut_study_value *values = strut_study_allocate(reader, reader->file->column_count + 1,
-                                                   sizeof *values),
-                    *value = values;
-  for (size_t i = 0; i < study->axis_count && values; i++)
-    for (size_t c = 0; c < study->axes[i].column_count; c++, value++) {
-      const strut_study_column *column = &study->axes[i].columns[c];
-      value->number = column->number ? column->number[0] : (double)NAN;
-      value->word = column->word ? column->words[0] : NULL;
-    }
-  return values;
-}
-
 /* Times in another unit than that of their column make runs that are much longer than the model's own, or do not end. */
-static void check_durations(strut_study_reader *reader, const strut_tree *matches,
+static void check_durations(strut_study_reader *study, const strut_tree *matches,
                             const strut_study_fit *fit) {
   strut_setup setup;
-  strut_error error = {0};
+  strut_diagnostics unused = {0};
+  strut_reader *reader = study->reader;
   char message[200];
-  const strut_tree *key = matches->first;
-  const strut_study_value *values = reader->reader->failed ? NULL : first_values(reader);
-  if (!values || strut_study_setup(reader->file, values, &setup, &error)) return;
+  const strut_study_file *file = study->file;
+  bool known = strut_scene_source_read(file->sources[0], file->settings, file->setting_count,
+                                       STRUT_FOR_RUN_STEP_LATER, &unused, &setup) == STRUT_OK;
+  strut_diagnostics_free(&unused);
+  if (!known) return;
   double own = strut_experiment_span(&setup.experiment, &setup.scene).duration;
+  const strut_tree *key = matches->first;
   for (size_t m = 0; m < fit->match_count; m++, key = key->next->next) {
     const strut_fit_match *match = &fit->matches[m];
     double last = match->kind == STRUT_FIT_MOTION ? match->at[match->count - 1] : 0.0;
     if (match->align.delay) last -= match->at[0];
     if (!(last > USUAL * own && own > 0.0)) continue;
     const strut_tree *value = strut_tree_find(key->next, "time", NULL);
-    reading self = {0};
-    strut_data_find(reader->reader->tables, reader->reader->table_count, value->text, &self.table);
+    const strut_data_table *table;
+    const strut_data_column *column =
+        strut_data_find(reader->tables, reader->table_count, value->text, &table);
     snprintf(message, sizeof message,
              "the runs of match '%.40s' would last %.4g s, %.3g times the model's own of %.4g s: "
              "check the unit of this column",
              match->name, last, last / own, own);
     if (last > MOST * own)
-      refuse_number(reader, &self, value, match->at, match->count - 1, message);
+      strut_refuse_data(reader, value, table, column, match->count - 1, message);
     else
-      strut_note(reader->reader->diagnostics, value->place, "%s", message);
+      strut_note(reader->diagnostics, value->place, "%s", message);
   }
   strut_setup_free(&setup);
 }
@@ -517,12 +476,9 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   fit->matches = strut_study_allocate(reader, count, sizeof *fit->matches);
   if (!fit->matches) return;
   const strut_tree *sets[STRUT_FIT_MOST_MATCHES];
-  for (const strut_tree *key = matches->value->first; key; key = key->next->next) {
-    bool map = key->next->kind == STRUT_TREE_MAP;
-    const strut_tree *set = map ? strut_tree_find(key->next, "set", NULL) : NULL;
-    sets[fit->match_count] = set && set->kind == STRUT_TREE_MAP ? set : NULL;
-    read_match(reader, key, &fit->matches[fit->match_count++]);
-  }
+  for (const strut_tree *key = matches->value->first; key;
+       key = key->next->next, fit->match_count++)
+    sets[fit->match_count] = read_match(reader, key, &fit->matches[fit->match_count]);
   require_noise(reader, matches->value, fit);
   for (size_t m = 0; m < fit->match_count; m++)
     for (size_t k = 0; k <= m; k++) refuse_twice(reader, &fit->matches[m], &fit->matches[k]);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -156,13 +157,26 @@ strut_status strut_sweep_refuse_series(strut_sweep_study *study, const strut_fit
   return STRUT_BAD_SCENE;
 }
 
+/* Column i of a table behind those of its axes, for suggestions. */
+static const char *kept_name(const void *table, size_t i) {
+  const strut_sweep_plan *plan = table;
+  return plan->axis_columns + i < plan->column_count ? plan->columns[plan->axis_columns + i].name
+                                                     : NULL;
+}
+
 /* Columns of a fit; what does not fit the model is reported where the study says it. */
 static strut_status bind_fit(strut_sweep_study *study, strut_error *error) {
-  const strut_fit_series *at;
-  strut_status status = strut_fit_add_columns(&study->plan, &at, error);
-  if (status != STRUT_BAD_SCENE || !at) return status;
-  strut_sweep_refuse_series(study, at, error->message);
-  *error = (strut_error){0};
+  strut_fit_refusal refusal;
+  strut_status status = strut_fit_add_columns(&study->plan, &refusal, error);
+  const strut_fit_series *at = refusal.series;
+  const char *near = at ? strut_did_you_mean(at->of, kept_name, &refusal.table) : NULL;
+  if (near) {
+    size_t used = strlen(error->message);
+    snprintf(error->message + used, sizeof error->message - used, "; did you mean '%s'?", near);
+  }
+  if (at) strut_sweep_refuse_series(study, at, error->message);
+  if (at) *error = (strut_error){0};
+  strut_sweep_plan_free(&refusal.table);
   return status;
 }
 
