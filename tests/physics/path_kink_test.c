@@ -81,65 +81,6 @@ TEST(kinks_backwards) {
   check_event(&w.path.events[3], STRUT_PATH_KINK_LIMIT, turn, 1, 0);
 }
 
-/* A path along a coordinate has two events, of these kinds, at these values. */
-static void check_pair(const strut_setup *setup, strut_path_options options,
-                       const strut_path_event_kind *kind, const double *value) {
-  OWN(walk) w = walk_by(setup, options);
-  assert_all_equal(w.path.end, STRUT_PATH_UNTIL, w.path.event_count, 2);
-  for (int i = 0; i < 2; i++) {
-    assert_int_equal(w.path.events[i].kind, kind[i]);
-    assert_near(w.path.events[i].at.factor, value[i], 1e-7);
-  }
-}
-
-/* The tip of a stiff rod swings past the top, where a cable is taut, or past the ground, only for a moment. */
-static void check_swing(bool touches, double depth) {
-  static const strut_path_event_kind kind[][2] = {{STRUT_PATH_TAUT, STRUT_PATH_SLACK},
-                                                  {STRUT_PATH_TOUCHDOWN, STRUT_PATH_LIFT_OFF}};
-  OWN(strut_setup) setup = build_setup();
-  int32_t hub = build_support(&setup.scene, 0, 0), anchor = build_support(&setup.scene, 0, -0.5);
-  int32_t tip = build_node(&setup.scene, -0.6, touches ? -0.8 : 0.8);
-  build_sized(&setup.scene, STRUT_BAR, hub, tip, 1e6, 0, 0, 1);
-  build_sized(&setup.scene, STRUT_CABLE, anchor, tip, 1000, 0, 0, 1.5 - (touches ? 0 : depth));
-  if (touches) build_contact(&setup.scene, tip, 1e5, 0);
-  setup.scene.ground.height = depth - 1;
-  double rise = touches ? 1 - depth : (1.5 - depth) * (1.5 - depth) - 1.25;
-  double half = sqrt(1 - rise * rise);
-  check_pair(&setup,
-             (strut_path_options){STRUT_PATH_OVER_COORDINATE, .index = 2 * tip, .until = 1.13},
-             kind[touches], (const double[]){0.6 - half, 0.6 + half});
-}
-
-/* A law that dips: pulled by a load two limit points; stretched, so that it pushes, two bifurcations. */
-static void check_dip(bool loaded, double half) {
-  static const strut_path_event_kind kind[][2] = {{STRUT_PATH_BIFURCATION, STRUT_PATH_BIFURCATION},
-                                                  {STRUT_PATH_LIMIT, STRUT_PATH_LIMIT}};
-  const double at = 0.5137, low = at - half, high = at + half;
-  double law[][3] = {{-2 * half, 1, 0}, {at * at - half * half, -at, 1 / 3.0}};
-  double load[] = {((low / 3 - at) * low + low * high) * low,
-                   ((high / 3 - at) * high + low * high) * high};
-  OWN(strut_setup) setup = build_setup();
-  int32_t wall = build_support(&setup.scene, 0, 0), tip = build_node(&setup.scene, 1, 0);
-  setup.scene.nodes[tip].fixed[loaded] = true;
-  int32_t spring =
-      build_sized(&setup.scene, STRUT_SPRING, wall, tip, 0, 0, 0, loaded ? 1 : 1 + low);
-  strut_law *bent = &setup.scene.members[spring].law;
-  bent->kind = STRUT_LAW_POLYNOMIAL, bent->count = 3;
-  bent->force = build_numbers(&setup.scene, law[loaded], 3);
-  if (loaded) build_load(&setup.scene, tip, 1, 0, -1);
-  strut_path_options over = {STRUT_PATH_OVER_COORDINATE, .index = 2 * tip, .until = 1.5};
-  check_pair(&setup, loaded ? (strut_path_options){.until = 0.2} : over, kind[loaded],
-             loaded ? load : (const double[]){low, high});
-}
-
-TEST(what_comes_and_goes_between_two_points) {
-  for (double small = 0.05; small > 1e-6; small /= 4) {
-    check_swing(false, small), check_swing(true, small);
-    if (small < 5e-4) continue; /* roots of eigenvalues are not told apart any nearer */
-    check_dip(false, small), check_dip(true, small);
-  }
-}
-
 /*
  * A mast of stiffness K between two guys, loaded from above: it is straight and stable as long as
  * the guys pull, and straight but unstable as soon as they do not.
@@ -170,22 +111,19 @@ TEST(bifurcation_at_kink) {
 /* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
 TEST(touchdown_restores_stability) {
   const double a = 1, h = 0.3, k = 1000, floor = 0.05;
-  OWN(strut_setup) setup = build_setup();
-  int32_t left = build_support(&setup.scene, -a, 0), right = build_support(&setup.scene, a, 0);
-  int32_t apex = build_node(&setup.scene, 0, h);
-  build_member(&setup.scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(&setup.scene, STRUT_BAR, apex, right, k, 0, 0);
+  const int32_t apex = 2;
+  OWN(strut_setup) setup = arch(a, h, k);
   build_contact(&setup.scene, apex, 1e4, 0);
   setup.scene.ground.height = floor;
   build_load(&setup.scene, apex, 0, -1, -1);
   OWN(walk) w = walk_until(&setup, 15);
-  double there = 2 * k * floor * (hypot(a, h) / hypot(a, floor) - 1);
+  double there = arch_load(a, h, k, floor);
   assert_all_equal(w.path.event_count, 3, w.path.events[0].kind, STRUT_PATH_LIMIT,
                    w.path.events[0].after, 1);
   check_event(&w.path.events[1], STRUT_PATH_TOUCHDOWN, there, 1, 0);
   check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
   const strut_path_point *end = &w.path.points[w.path.point_count - 1];
-  double y = end->at.q[2 * apex + 1], push = 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
+  double y = end->at.q[2 * apex + 1], push = arch_load(a, h, k, y);
   assert_all_near(1e-9, end->at.contact[0], 1e4 * (floor - y), end->at.contact[0] + push, 15);
 }
 

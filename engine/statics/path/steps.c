@@ -214,15 +214,25 @@ static place find_vertex(place a, place b, place c) {
 
 static bool is_within(double at) { return at > WITHIN && at < WHOLE_STEP - WITHIN; }
 
+enum { STOP = -1 }; /* in place of a switch: the coordinate at which the path stops */
+
 /* A switch on the cubic through both ends of the step: above 0 while it stays as it is. */
 static place measure_between(strut_path_walk *walk, int32_t which, double at) {
+  strut_path_system *system = &walk->system;
   double length = strut_path_distance(walk, walk->next, walk->y), *point = walk->trial;
   memset(point, 0, strut_path_bytes(walk));
-  for (int32_t i = 0; i <= walk->system.n; i++)
+  for (int32_t i = 0; i <= system->n; i++)
     point[i] = strut_hermite(walk->y[i], walk->tangent[i], walk->next[i], walk->next_tangent[i],
                              length, at);
-  double value = strut_path_switch_value(&walk->system, which, point);
-  return (place){at, strut_path_switch_is_on(&walk->system, which) ? value : -value};
+  if (which == STOP) {
+    const strut_path_stop *stop = &system->parameter.options->stop;
+    double ahead = strut_path_evaluate(system, point)
+                       ? system->stop_at - system->latest.q[stop->coordinate]
+                       : (double)NAN;
+    return (place){at, copysign(1.0, stop->displacement) * ahead};
+  }
+  double value = strut_path_switch_value(system, which, point);
+  return (place){at, strut_path_switch_is_on(system, which) ? value : -value};
 }
 
 /* Where a switch is thrown and thrown back; or where it is farthest from a change that has just been. */
@@ -277,6 +287,7 @@ static double find_pair_of_zeros(const strut_path_walk *walk) {
 /* The part of the step up to the first place where something turns; after find_side at its end. */
 static double find_turn(strut_path_walk *walk) {
   double first = fmin(find_pair_of_limits(walk), find_pair_of_zeros(walk));
+  if (walk->system.parameter.options->stop.given) first = fmin(first, find_switch_turn(walk, STOP));
   for (int32_t k = 0; k < strut_path_switch_count(&walk->system); k++) {
     strut_path_switch_kind of = strut_path_switch_at(&walk->system, k).of;
     bool smooth = of != STRUT_PATH_FACET && of != STRUT_PATH_GRIP;
