@@ -114,3 +114,13 @@ static inline uint64_t strut_mix_bits(uint64_t z) {
 static inline double strut_stirred(uint64_t i) {
   return (double)(strut_mix_bits((i + 1) * 0x9e3779b97f4a7c15u) >> 11) * 0x1p-52 - 1.0;
 }
+
+/**
+ * Cubic Hermite interpolation at the fraction s of a step of length h, from x0 with slope v0 to x1
+ * with slope v1.
+ */
+static inline double strut_hermite(double x0, double v0, double x1, double v1, double h, double s) {
+  double r = 1.0 - s;
+  return x0 * (1.0 + 2.0 * s) * r * r + h * v0 * s * r * r + x1 * s * s * (3.0 - 2.0 * s) -
+         h * v1 * s * s * r;
+}

@@ -80,3 +80,35 @@ for until in 0.9 1 1.1 3; do
   near '.events | length' 22 0
 done
 gives '.points[-1].factor' 0.5110687 2e-6 path "$peers/gripper.yaml" --stop n22.x=0.39954 --steps 3000
+
+# ---- between two points of a path: a cable pulls at the top of a swing, the ground pushes at its bottom, the path ----
+# ---- stops; a law dips, so that its load turns twice, or what it pushes bifurcates twice ----
+yaml swing.yaml <<'END'
+parameters: {d: 1e-9, side: 1}
+nodes: {o: {position: [0, 0], fixed: both}, e: {position: [0, -0.5], fixed: both}, t: [-0.6, 0.8*side]}
+members: {rod: {kind: bar, nodes: [o, t], stiffness: 1 MN/m},
+          rope: {kind: cable, nodes: [e, t], stiffness: 1 kN/m, rest_length: 1.5 - d}}
+ground: {stiffness: 100 kN/m, height: d - 1, nodes: [t]}
+END
+yaml dip.yaml <<'END'
+parameters: {half: 0.04}
+nodes: {w: {position: [0, 0], fixed: both}, u: {position: [1, 0], fixed: y}}
+members: {m: {kind: spring, nodes: [w, u], law: {kind: polynomial, coefficients: [0.5137^2 - half^2, -0.5137, 1/3]}}}
+loads: {p: {node: u, force: [1, 0]}}
+END
+sed 's/fixed: y/fixed: x/; s/law:.*/rest_length: 1.5137 - half, law: {kind: polynomial, coefficients: [-2*half, 1]}}}/' dip.yaml >pushed.yaml
+# twice KIND KIND MIDDLE HALF WORD...: a path has two events, at equal distances from the middle.
+twice() {
+  kinds="[\"$1\", \"$2\"]" places="[$3 - ($4), $3 + ($4)]" && shift 4
+  finds ".end == \"until\" and [.events[].kind] == $kinds and
+    ([[.events[] | .value // .nodes.u[0] - 1], $places] | transpose | [.[] | .[0] - .[1] | fabs] | max < 1e-7)" path "$@"
+}
+for d in 1e-2 1e-4 1e-6; do
+  twice taut slack 0.6 "(1.5 - $d) * (1.5 - $d) - 1.25 | 1 - . * . | sqrt" swing.yaml --set d=$d --over t.x=0..1.13
+  twice touchdown lift-off 0.6 "1 - $d | 1 - . * . | sqrt" swing.yaml --set d=$d --set side=-1 --over t.x=0..1.13
+  finds '.end == "stop"' path swing.yaml --over t.x=0..1.13 --stop t.y="$(awk "BEGIN { print 0.2 - $d }")"
+done
+for half in 0.04 0.004 0.001; do
+  twice 'limit point' 'limit point' 0.5137 $half dip.yaml --set half=$half --until 0.2
+  twice bifurcation bifurcation 0.5137 $half pushed.yaml --set half=$half --over u.x=0..1.5
+done

@@ -152,7 +152,7 @@ holds 'def pull($dx; $dy): (($dx * $dx + $dy * $dy) | sqrt) as $l |
 # Branches of branches; a table, a CSV with a column for them, a picture.
 expect 0 path "$column" --set links=4 --until 40 --branches 2 -o branches --plot branches.svg
 head -1 branches/path.csv | grep -q '^branch,factor,' || fail "the column for branches"
-[ "$(cut -d, -f1 branches/path.csv | sort -un | tail -1)" = 20 ] || fail "20 branches"
+[ "$(cut -d, -f1 branches/path.csv | sort -un | tail -1)" = 26 ] || fail "26 branches"
 out_has "twin of branch"
 expect 0 path "$column" --set links=4 --until 40 --plot alone.svg
 [ "$(grep -c '<path' branches.svg)" -gt "$(($(grep -c '<path' alone.svg) + 19))" ] || fail "branches in the picture"

@@ -111,22 +111,19 @@ TEST(bifurcation_at_kink) {
 /* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
 TEST(touchdown_restores_stability) {
   const double a = 1, h = 0.3, k = 1000, floor = 0.05;
-  OWN(strut_setup) setup = build_setup();
-  int32_t left = build_support(&setup.scene, -a, 0), right = build_support(&setup.scene, a, 0);
-  int32_t apex = build_node(&setup.scene, 0, h);
-  build_member(&setup.scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(&setup.scene, STRUT_BAR, apex, right, k, 0, 0);
+  const int32_t apex = 2;
+  OWN(strut_setup) setup = arch(a, h, k);
   build_contact(&setup.scene, apex, 1e4, 0);
   setup.scene.ground.height = floor;
   build_load(&setup.scene, apex, 0, -1, -1);
   OWN(walk) w = walk_until(&setup, 15);
-  double there = 2 * k * floor * (hypot(a, h) / hypot(a, floor) - 1);
+  double there = arch_load(a, h, k, floor);
   assert_all_equal(w.path.event_count, 3, w.path.events[0].kind, STRUT_PATH_LIMIT,
                    w.path.events[0].after, 1);
   check_event(&w.path.events[1], STRUT_PATH_TOUCHDOWN, there, 1, 0);
   check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
   const strut_path_point *end = &w.path.points[w.path.point_count - 1];
-  double y = end->at.q[2 * apex + 1], push = 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
+  double y = end->at.q[2 * apex + 1], push = arch_load(a, h, k, y);
   assert_all_near(1e-9, end->at.contact[0], 1e4 * (floor - y), end->at.contact[0] + push, 15);
 }
 

@@ -5,22 +5,6 @@
 static const double SPAN = 1, HEIGHT = 0.3; /* of von Mises' truss: half its width, its height */
 enum { APEX = 2 };
 
-/* Supports at (-+SPAN, 0), apex at (0, HEIGHT), without a load. */
-static strut_setup arch(double k) {
-  strut_setup setup = build_setup();
-  int32_t left = build_support(&setup.scene, -SPAN, 0),
-          right = build_support(&setup.scene, SPAN, 0);
-  int32_t apex = build_node(&setup.scene, 0, HEIGHT);
-  build_member(&setup.scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(&setup.scene, STRUT_BAR, apex, right, k, 0, 0);
-  return setup;
-}
-
-/* What holds the apex at y, downwards, and its derivative. */
-static double arch_load(double k, double y) {
-  return 2 * k * y * (hypot(SPAN, HEIGHT) / hypot(SPAN, y) - 1);
-}
-
 static double arch_stiffness(double k, double y) {
   double l = hypot(SPAN, y);
   return 2 * k * (hypot(SPAN, HEIGHT) * SPAN * SPAN / (l * l * l) - 1);
@@ -35,7 +19,7 @@ static double limit_height(void) {
 /* The apex is pushed through: its reaction draws the curve past both limit points, which are none. */
 static void check_displaced_apex(bool supported, double from) {
   const double k = 1000, until = -0.6;
-  OWN(strut_setup) setup = arch(k);
+  OWN(strut_setup) setup = arch(SPAN, HEIGHT, k);
   setup.scene.nodes[APEX].fixed[1] = supported;
   OWN(walk) w = walk_by(
       &setup,
@@ -51,7 +35,7 @@ static void check_displaced_apex(bool supported, double from) {
   for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double y = HEIGHT + p->at.factor, l = hypot(SPAN, y);
     assert_near(p->at.q[2 * APEX + 1], y, 1e-15);
-    assert_near(p->at.reaction[2 * APEX + 1], -arch_load(k, y), 1e-11);
+    assert_near(p->at.reaction[2 * APEX + 1], -arch_load(SPAN, HEIGHT, k, y), 1e-11);
     assert_near(p->at.force[0], k * (l - hypot(SPAN, HEIGHT)), 1e-11);
     assert_near(p->at.reaction[0], -k * (l - hypot(SPAN, HEIGHT)) * SPAN / l, 1e-11);
     assert_near(p->at.reaction[1] + p->at.reaction[3] + p->at.reaction[5], 0, 1e-11);
@@ -59,7 +43,7 @@ static void check_displaced_apex(bool supported, double from) {
     most = fmax(most, p->at.reaction[2 * APEX + 1]);
     least = fmin(least, p->at.reaction[2 * APEX + 1]);
   }
-  double limit = arch_load(k, limit_height());
+  double limit = arch_load(SPAN, HEIGHT, k, limit_height());
   assert_all_near(0.01 * limit, most, limit, least, -limit);
 }
 
@@ -73,16 +57,17 @@ TEST(displacement_of_a_node) {
 /* A free node that carries a load: displaced from where that holds it. */
 TEST(displacement_under_load) {
   const double k = 1000, load = 5;
-  OWN(strut_setup) setup = arch(k);
+  OWN(strut_setup) setup = arch(SPAN, HEIGHT, k);
   build_load(&setup.scene, APEX, 0, -load, -1);
   OWN(walk) w = walk_by(
       &setup, (strut_path_options){
                   .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
   const strut_path *path = &w.path;
   double start = path->points[0].at.q[2 * APEX + 1];
-  assert_relative(arch_load(k, start), load, 1e-11);
+  assert_relative(arch_load(SPAN, HEIGHT, k, start), load, 1e-11);
   for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++)
-    assert_near(p->at.reaction[2 * APEX + 1], load - arch_load(k, start + p->at.factor), 1e-10);
+    assert_near(p->at.reaction[2 * APEX + 1],
+                load - arch_load(SPAN, HEIGHT, k, start + p->at.factor), 1e-10);
 }
 
 /* A support pulls a slack cable taut, and then a spring behind it. */
@@ -112,7 +97,7 @@ static const double LEVER_SPRING = 30, LEVER = 1;
 
 /* What is added to the lever where the truss is at y: the lever pushes with what holds the apex. */
 static double lever_length(double k, double y) {
-  return arch_load(k, y) / LEVER_SPRING - (y - HEIGHT);
+  return arch_load(SPAN, HEIGHT, k, y) / LEVER_SPRING - (y - HEIGHT);
 }
 
 /* Where the lever turns back: its stiffness and the truss's cancel, for which |y| is unique. */
@@ -131,7 +116,7 @@ static double turning_height(double k) {
 /* An actuator of a bistable truss: it snaps where length over height has its limit points. */
 TEST(actuator_snaps) {
   const double k = 1000;
-  OWN(strut_setup) setup = arch(k);
+  OWN(strut_setup) setup = arch(SPAN, HEIGHT, k);
   setup.scene.nodes[APEX].fixed[0] = true;
   int32_t above = build_support(&setup.scene, 0, HEIGHT + LEVER);
   int32_t member = build_sized(&setup.scene, STRUT_SPRING, above, APEX, LEVER_SPRING, 0, 0, LEVER);
@@ -151,7 +136,7 @@ TEST(actuator_snaps) {
   for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double y = p->at.q[2 * APEX + 1];
     assert_near(p->at.factor, lever_length(k, y), 1e-12);
-    assert_near(p->at.force[2], -arch_load(k, y), 1e-10);
+    assert_near(p->at.force[2], -arch_load(SPAN, HEIGHT, k, y), 1e-10);
     assert_int_equal(p->negative, LEVER_SPRING - arch_stiffness(k, y) < 0 ? 1 : 0);
   }
 }
@@ -167,7 +152,7 @@ static strut_status scene_of_stiffness(void *context, double value, strut_setup 
   family *f = context;
   f->calls++;
   if (value < 50) return strut_fail(error, STRUT_BAD_SCENE, "k must be 50 N/m at least");
-  *setup = arch(f->idle ? 1000 : value);
+  *setup = arch(SPAN, HEIGHT, f->idle ? 1000 : value);
   if (f->more_nodes && value > f->more_nodes) build_support(&setup->scene, 5, 5);
   build_load(&setup->scene, APEX, 0, f->unloaded ? 0 : -1, -1);
   return STRUT_OK;
@@ -193,13 +178,13 @@ TEST(stiffness_of_a_scene) {
   OWN(walk) w = walk_by(&setup, options);
   const strut_path *path = &w.path;
   assert_int_equal(path->events[0].kind, STRUT_PATH_LIMIT);
-  double soft = 1 / arch_load(1, limit_height());
+  double soft = 1 / arch_load(SPAN, HEIGHT, 1, limit_height());
   assert_relative(path->events[0].at.factor, soft, 1e-11);
   assert_near(path->events[0].at.q[2 * APEX + 1], limit_height(), 1e-8);
   assert_non_null(strstr(path->events[0].detail, "k can fall no further"));
   for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double y = p->at.q[2 * APEX + 1];
-    assert_near(arch_load(p->at.factor, y), 1, 1e-11);
+    assert_near(arch_load(SPAN, HEIGHT, p->at.factor, y), 1, 1e-11);
     assert_int_equal(p->negative, y < limit_height() ? 1 : 0);
   }
 }

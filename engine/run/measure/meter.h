@@ -44,16 +44,6 @@ static inline double strut_time_grid_rest(const strut_time_grid *grid) {
   return rest < grid->step * (1.0 - 1e-6) ? rest : 0.0;
 }
 
-/**
- * Cubic Hermite interpolation at the fraction s of a step of length h, from x0 with slope v0 to x1
- * with slope v1.
- */
-static inline double strut_hermite(double x0, double v0, double x1, double v1, double h, double s) {
-  double r = 1.0 - s;
-  return x0 * (1.0 + 2.0 * s) * r * r + h * v0 * s * r * r + x1 * s * s * (3.0 - 2.0 * s) -
-         h * v1 * s * s * r;
-}
-
 /*
  * Dense output: the state at any instant within a piece of the motion.
  *

@@ -177,7 +177,11 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *wh
           folded = system->spectrum.folded;
   int32_t sense = after > before ? 1 : -1, count = sense * (after - before), i = 0;
   bool turned = turns_back(walk), leads_on = false, met = false;
-  for (int32_t k = 0; k < system->n; k++) walk->values[k] = system->spectrum.value[k];
+  for (int32_t k = 0; k < system->n; k++) {
+    walk->earlier_values[k] = walk->values[k];
+    walk->values[k] = system->spectrum.value[k];
+  }
+  walk->earlier = walk->negative < 0 ? 0.0 : strut_path_distance(walk, whole->from, whole->to);
   walk->negative = after;
   if (before < 0 || !(piece->length > 0)) return false;
   while (i < count && !leads_on) {

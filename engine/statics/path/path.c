@@ -277,8 +277,8 @@ static strut_status list_held(const path_start *self, strut_path *path, strut_er
 static bool allocate_walk(strut_path_walk *walk) {
   if (!STRUT_NUMBERS(&walk->system.arena, 2 * (walk->system.n + 1), &walk->y, &walk->tangent,
                      &walk->next, &walk->next_tangent, &walk->trial, &walk->spare, &walk->upward,
-                     &walk->fork, &walk->values, &walk->scale, &walk->part.from,
-                     &walk->part.tangent, &walk->part.to))
+                     &walk->fork, &walk->values, &walk->earlier_values, &walk->scale,
+                     &walk->part.from, &walk->part.tangent, &walk->part.to))
     return false;
   walk->upward[walk->system.n] = 1.0;
   walk->step = 0.01;

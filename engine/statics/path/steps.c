@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
@@ -189,6 +190,114 @@ static bool is_critical(const strut_path_walk *walk) {
 }
 
 /*
+ * What reaches zero and turns back within a step shows at neither end: a cable that is taut for a moment, a contact
+ * that closes and opens, a pair of limit points or of bifurcations. Such a step is to end where it turns.
+ */
+
+enum { LOOKS = 4 };
+
+static const double WITHIN = 0.02;  /* of a step: what turns nearer to an end shows there */
+static const double SMALL = 0.2;    /* of the values at both ends: an extreme that may be zero */
+static const double GRAZING = 1e-4; /* likewise, one that is near enough */
+static const double WHOLE_STEP = 1.0;
+
+typedef struct place {
+  double at, value;
+} place;
+
+/* Where the parabola through three places turns, and its value there. */
+static place find_vertex(place a, place b, place c) {
+  double left = (b.value - a.value) / (b.at - a.at), right = (c.value - b.value) / (c.at - b.at);
+  double bend = (right - left) / (c.at - a.at), slope = left + bend * (b.at - a.at);
+  return (place){b.at - 0.5 * slope / bend, b.value - 0.25 * slope * slope / bend};
+}
+
+static bool is_within(double at) { return at > WITHIN && at < WHOLE_STEP - WITHIN; }
+
+enum { STOP = -1 }; /* in place of a switch: the coordinate at which the path stops */
+
+/* A switch on the cubic through both ends of the step: above 0 while it stays as it is. */
+static place measure_between(strut_path_walk *walk, int32_t which, double at) {
+  strut_path_system *system = &walk->system;
+  double length = strut_path_distance(walk, walk->next, walk->y), *point = walk->trial;
+  memset(point, 0, strut_path_bytes(walk));
+  for (int32_t i = 0; i <= system->n; i++)
+    point[i] = strut_hermite(walk->y[i], walk->tangent[i], walk->next[i], walk->next_tangent[i],
+                             length, at);
+  if (which == STOP) {
+    const strut_path_stop *stop = &system->parameter.options->stop;
+    double ahead = strut_path_evaluate(system, point)
+                       ? system->stop_at - system->latest.q[stop->coordinate]
+                       : (double)NAN;
+    return (place){at, copysign(1.0, stop->displacement) * ahead};
+  }
+  double value = strut_path_switch_value(system, which, point);
+  return (place){at, strut_path_switch_is_on(system, which) ? value : -value};
+}
+
+/* Where a switch is thrown and thrown back; or where it is farthest from a change that has just been. */
+static double find_switch_turn(strut_path_walk *walk, int32_t which) {
+  double even = STRUT_PATH_EVEN * walk->system.size;
+  place a = measure_between(walk, which, 0.0), c = measure_between(walk, which, WHOLE_STEP);
+  if (!isfinite(a.value) || !isfinite(c.value)) return WHOLE_STEP;
+  bool begins = fabs(a.value) <= even && c.value < -even;
+  if (!begins && !(a.value > even && c.value > even)) return WHOLE_STEP;
+  place b = measure_between(walk, which, 0.5), vertex;
+  double small = fmin(a.value, c.value);
+  for (int k = 0; k < LOOKS; k++) {
+    vertex = find_vertex(a, b, c);
+    if (!(vertex.at > a.at && vertex.at < c.at) || begins != (vertex.value > b.value)) break;
+    if (!begins && !(vertex.value < SMALL * small)) break;
+    vertex = measure_between(walk, which, vertex.at);
+    if (begins ? vertex.value > even : vertex.value < GRAZING * small) return vertex.at;
+    place *end = vertex.at < b.at ? &c : &a;
+    *end = b, b = vertex;
+  }
+  return WHOLE_STEP;
+}
+
+/* Where the rate of the parameter, a parabola by its ends and its mean, changes sign and changes back. */
+static double find_pair_of_limits(const strut_path_walk *walk) {
+  int32_t n = walk->system.n;
+  double from = walk->tangent[n], to = walk->next_tangent[n];
+  double mean = (walk->next[n] - walk->y[n]) / strut_path_distance(walk, walk->next, walk->y);
+  place vertex = find_vertex((place){0.0, from}, (place){0.5, 1.5 * mean - 0.25 * (from + to)},
+                             (place){WHOLE_STEP, to});
+  bool turns = from * to > 0.0 && is_within(vertex.at) &&
+               vertex.value * from < SMALL * from * (fabs(from) < fabs(to) ? from : to);
+  return turns ? vertex.at : WHOLE_STEP;
+}
+
+/* Where an eigenvalue passes zero and comes back, by its values at both ends and at the point before. */
+static double find_pair_of_zeros(const strut_path_walk *walk) {
+  const strut_path_system *system = &walk->system;
+  for (int32_t i = 0; i < system->n && walk->earlier > 0.0; i++) {
+    double here = walk->values[i], there = system->spectrum.value[i];
+    place vertex = find_vertex((place){-walk->earlier / walk->step, walk->earlier_values[i]},
+                               (place){0.0, here}, (place){WHOLE_STEP, there});
+    double small = fabs(here) < fabs(there) ? here : there;
+    if (here * there > 0.0 && is_within(vertex.at) &&
+        fabs(small) > BLURRED * system->spectrum.noise &&
+        vertex.value * small < SMALL * small * small)
+      return vertex.at;
+  }
+  return WHOLE_STEP;
+}
+
+/* The part of the step up to the first place where something turns; after find_side at its end. */
+static double find_turn(strut_path_walk *walk) {
+  double first = fmin(find_pair_of_limits(walk), find_pair_of_zeros(walk));
+  if (walk->system.parameter.options->stop.given) first = fmin(first, find_switch_turn(walk, STOP));
+  for (int32_t k = 0; k < strut_path_switch_count(&walk->system); k++) {
+    strut_path_switch_kind of = strut_path_switch_at(&walk->system, k).of;
+    bool smooth = of != STRUT_PATH_FACET && of != STRUT_PATH_GRIP;
+    if (smooth && !strut_path_turns_round(&walk->system, k))
+      first = fmin(first, find_switch_turn(walk, k));
+  }
+  return first;
+}
+
+/*
  * Near a limit point or bifurcation other solutions lie nearer than the step is long, and Newton's method may
  * end on one of them. There a step counts only if shorter ones find the same.
  */
@@ -196,13 +305,20 @@ bool strut_path_find_next(strut_path_walk *walk) {
   strut_path_system *system = &walk->system;
   check c = {0};
   walk->part.known = false;
-  bool found = find_next(walk), done = !found || walk->negative < 0;
+  bool found = find_next(walk), done = !found || walk->negative < 0, cut = false;
   while (!done && walk->step > FINEST) {
     side after = {0};
     bool blurred = false;
     if (!find_side(walk, walk->next, walk->next_tangent, walk->step, &after, &blurred)) break;
     side before = {walk->negative, way_of(walk->tangent[system->n])};
-    if (!is_changed(before, after) && !is_critical(walk)) break;
+    bool changed = is_changed(before, after), critical = is_critical(walk);
+    double turn = changed || cut ? WHOLE_STEP : find_turn(walk);
+    if (turn < WHOLE_STEP) {
+      cut = true, walk->step *= turn;
+      found = find_next(walk), done = !found;
+      continue;
+    }
+    if (!changed && !critical) break;
     walk->failed = walk->failed || (!c.whole.y && !allocate_check(walk, &c));
     done = walk->failed || is_confirmed(walk, &c, after);
     if (done) break;

@@ -191,6 +191,7 @@ void strut_path_count_negative(strut_path_walk *walk) {
   strut_path_spectrum(&walk->system, walk->y,
                       STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
   walk->negative = walk->system.spectrum.negative;
+  walk->earlier = 0.0;
   for (int32_t i = 0; i < walk->system.n; i++) walk->values[i] = walk->system.spectrum.value[i];
 }
 
