@@ -229,7 +229,7 @@ STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const
 STRUT_API const char *strut_key_meant(strut_section section, const char *guess);
 /** The i-th spelling, or NULL after the last. */
 STRUT_API const strut_spelling *strut_spelling_at(size_t i);
-/** The number of a spelling; below 32 for former names. */
+/** The number of a spelling, below 32. */
 STRUT_API int strut_spelling_index(const strut_spelling *spelling);
 /** The current name of a key: `name` itself, unless it is a former one. */
 STRUT_API const char *strut_key_current(strut_section section, const char *name);
