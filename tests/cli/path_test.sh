@@ -33,7 +33,7 @@ shows 0 "stable" path arch.yaml --load weight --until -3
 
 # A load that nothing resists, one that is not there, one that does nothing.
 tells 1 "unknown load 'wait'; the scene's loads are: weight, wind" path arch.yaml --load wait
-tells 1 "acts on nothing that can move" path arch.yaml --load wind
+tells 1 "the load wind is zero; there is no path to follow" path arch.yaml --load wind
 tells 1 "--until expects" path arch.yaml --until "3 N"
 tells 1 "a whole number from 1 to" path arch.yaml --steps 0
 sed '/right: {pos/s/, fixed: both//; s/left: {position: \[-1, 0\], fixed: both}/left: [-1, 0]/' arch.yaml >loose.yaml

@@ -9,7 +9,7 @@ import random
 import subprocess
 import sys
 import tempfile
-import unittest
+import unittest.mock
 
 from arrays import main, np, program, strut
 
@@ -92,7 +92,8 @@ class Studies(unittest.TestCase):
         fit.save("kept.csv")
         self.assertEqual(pathlib.Path("kept.csv").read_bytes(), pathlib.Path("program/table.csv").read_bytes())
         self.assertRaisesRegex(ValueError, "^'.png' is .*: .json .svg .csv$", fit.save, "kept.png")
-        self.assertRaisesRegex(AttributeError, "^figures and svg", lambda: fit.plot)
+        residuals = fit.plot(ax=unittest.mock.Mock()).plot.call_args.args[1]
+        self.assertAlmostEqual(sum(r * r for r in residuals), fit.starts[0].sum, 6)
         self.assertEqual((again.parameters, list(again["end"])), (fit.parameters, list(fit["end"])))
         self.assertIn("k 99.", repr(fit))
 
@@ -112,7 +113,7 @@ class Studies(unittest.TestCase):
         program("sweep", "points.yaml", "-o", "program", "--set", "c=2 N s/m", code=3)
         self.assert_same_files("python", "program")
         self.assertEqual((study.points, study.failed, len(study.table)), (3, 1, 3))
-        self.assertEqual(list(study["k"]), [50, 100, 1e9])
+        self.assertEqual([*study.plot("k", ax=unittest.mock.Mock()).plot.call_args.args[1]], [50e-9, 100e-9, 1])
         self.assertEqual([status == "completed" for status in study.table.status], [True, True, False])
         self.assertTrue(np.isfinite(study["velocity"][:2]).all() and study["message"][2])
         self.assertTrue(any("1 of 3 points failed" in text for text in study.warnings))

@@ -270,7 +270,7 @@ test("shows rigidity and form as tables", async ({ page }) => {
 });
 
 /* What a button may answer of some model: that the question does not fit it. */
-const REASONS = [/^Stopped/, /no constant load to follow/, /the load acts on nothing/, /neither a duration nor periods/,
+const REASONS = [/^Stopped/, /no constant load to follow/, /the load (is zero|acts on)/, /neither a duration nor periods/,
   /does not come to rest/, /no free node has mass/, /hold(s)? the (structure|drawn shape)/, /no equilibrium was found/,
   /form finding by \w+ knows straight members/, /the nearest densities/];
 

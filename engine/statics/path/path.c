@@ -71,7 +71,7 @@ static size_t count_names(const char *names) {
 static strut_status choose_loads(const strut_model *model, const char *name, double *load,
                                  strut_path *path, strut_error *error) {
   const strut_scene *scene = model->scene;
-  bool acts = false, alike = true;
+  bool acts = false, alike = true, zero = true;
   size_t count = 0;
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
@@ -80,6 +80,7 @@ static strut_status choose_loads(const strut_model *model, const char *name, dou
     path->several = count > 0;
     alike = alike && (!count || fabs(size - path->reference) <= ALIKE * size);
     path->reference = size;
+    zero = zero && size == 0 && l->moment == 0;
     alike = alike && !l->couple;
     count++;
     if (l->couple) load[model->length + strut_couple_slot(model, i)] = l->moment;
@@ -99,9 +100,9 @@ static strut_status choose_loads(const strut_model *model, const char *name, dou
         error, STRUT_USAGE,
         "the scene has no constant load to follow; give it one under 'loads', or follow "
         "something else (--over)");
-  return strut_fail(error, STRUT_USAGE,
-                    "the load%s%s acts on nothing that can move; there is no path to follow",
-                    name ? " " : "", name ? name : "");
+  return strut_fail(error, STRUT_USAGE, "the load%s%s %s; there is no path to follow",
+                    name ? " " : "", name ? name : "",
+                    zero ? "is zero" : "acts on nothing that can move");
 }
 
 /* The start of a path. */

@@ -79,48 +79,65 @@ static const strut_spelling spellings[] = {
     {STRUT_SECTION_MEMBER, "kind", "strut", "bar", STRUT_SPELLING_SYNONYM},
     {STRUT_SECTION_MEMBER, "kind", "string", "cable", STRUT_SPELLING_SYNONYM},
     {STRUT_SECTION_NODE, "fixed", "true", "both", STRUT_SPELLING_SYNONYM},
-    {STRUT_SECTION_NODE, "fixed", "false", "none", STRUT_SPELLING_SYNONYM},
-    {STRUT_SECTION_SCENE, NULL, "elements", "members", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_SCENE, NULL, "points", "nodes", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_SCENE, NULL, "forces", "loads", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_NODE, NULL, "coordinates", "position", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_NODE, NULL, "pos", "position", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_NODE, NULL, "at", "position", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_NODE, NULL, "support", "fixed", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "type", "kind", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_NODE, NULL, "m", "mass", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "k", "stiffness", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "c", "damping", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "d", "damping", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "l0", "rest_length", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "from", "nodes", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "between", "nodes", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "to", "nodes", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "preload", "pretension", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "EA", "axial_stiffness", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "prestress", "pretension", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_MEMBER, NULL, "length", "rest_length", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_GROUND, NULL, "angle", "slope", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_GROUND, NULL, "mu", "friction", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_FRICTION, NULL, "coefficient", "mu", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_SOLVER, NULL, "timestep", "step", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_SOLVER, NULL, "time_step", "step", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_SOLVER, NULL, "dt", "step", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_SOLVER, NULL, "method", "integrator", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_RUN, NULL, "time", "duration", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_RUN, NULL, "length", "duration", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_STUDY, NULL, "over", "axes", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_FIGURE, NULL, "by", "series", STRUT_SPELLING_MISTAKE}};
+    {STRUT_SECTION_NODE, "fixed", "false", "none", STRUT_SPELLING_SYNONYM}};
+
+/* Likely first guesses of keys, and the key that is meant; a dotted one is of another mapping. */
+static const struct {
+  strut_section section;
+  const char *guesses, *meant;
+} first_guesses[] = {
+    {STRUT_SECTION_SCENE, "title|label", "name"},
+    {STRUT_SECTION_SCENE, "params|variables|constants", "parameters"},
+    {STRUT_SECTION_SCENE, "points|vertices|joints|masses", "nodes"},
+    {STRUT_SECTION_SCENE, "elements|edges|links|cables|strings|springs|rods|struts", "members"},
+    {STRUT_SECTION_SCENE, "material|materials|properties", "groups"},
+    {STRUT_SECTION_SCENE, "fixed|supports|anchors|constraints|boundary", "nodes.NAME.fixed"},
+    {STRUT_SECTION_SCENE, "g|gravitational_acceleration", "gravity"},
+    {STRUT_SECTION_SCENE, "floor|surface|terrain|contact|contacts", "ground"},
+    {STRUT_SECTION_SCENE, "friction|mu|friction_coefficient", "ground.friction"},
+    {STRUT_SECTION_SCENE, "drive|drives|motor|motors|muscles|actuation", "actuators"},
+    {STRUT_SECTION_SCENE, "force|forces", "loads"},
+    {STRUT_SECTION_SCENE, "time|end_time|t_end|tspan", "run.duration"},
+    {STRUT_SECTION_SCENE, "dt|timestep|time_step", "solver.step"},
+    {STRUT_SECTION_NODE, "coordinates|coords|location|pos|at|x|y|xy", "position"},
+    {STRUT_SECTION_NODE, "support|constraint|pinned|pin|anchor|anchored|fix|locked", "fixed"},
+    {STRUT_SECTION_NODE, "m|weight", "mass"},
+    {STRUT_SECTION_MEMBER, "type", "kind"},
+    {STRUT_SECTION_MEMBER, "material", "group"},
+    {STRUT_SECTION_MEMBER, "from|to|between|ends|connects|connect|points|start|end|i|j", "nodes"},
+    {STRUT_SECTION_MEMBER, "k|spring_constant", "stiffness"},
+    {STRUT_SECTION_MEMBER, "EA|E|A|area|modulus|youngs_modulus|cross_section", "axial_stiffness"},
+    {STRUT_SECTION_MEMBER, "c|d|b|damper|viscosity", "damping"},
+    {STRUT_SECTION_MEMBER, "m|weight|density|rho", "mass"},
+    {STRUT_SECTION_MEMBER, "l0|L0|length|natural_length|unstretched_length", "rest_length"},
+    {STRUT_SECTION_MEMBER, "preload|prestress|tension|force", "pretension"},
+    {STRUT_SECTION_GROUND, "k", "stiffness"},
+    {STRUT_SECTION_GROUND, "c|d|restitution", "damping"},
+    {STRUT_SECTION_GROUND, "angle|incline|inclination", "slope"},
+    {STRUT_SECTION_GROUND, "mu|mu_s|mu_k|friction_coefficient|coefficient_of_friction", "friction"},
+    {STRUT_SECTION_FRICTION, "coefficient|friction_coefficient|value", "mu"},
+    {STRUT_SECTION_SOLVER, "dt|timestep|time_step|step_size|stepsize|max_step|h", "step"},
+    {STRUT_SECTION_SOLVER, "method|type|scheme|algorithm", "integrator"},
+    {STRUT_SECTION_RUN, "time|length|end|until|end_time|total_time|t_end|tspan", "duration"},
+    {STRUT_SECTION_STUDY, "title|name", "study"},
+    {STRUT_SECTION_STUDY, "over|vary|sweep", "axes"},
+    {STRUT_SECTION_FIGURE, "by", "series"}};
+
+const char *strut_key_meant(strut_section section, const char *guess) {
+  for (size_t i = 0; i < sizeof first_guesses / sizeof first_guesses[0]; i++)
+    if (first_guesses[i].section == section &&
+        strut_word_find(first_guesses[i].guesses, guess) >= 0)
+      return first_guesses[i].meant;
+  return NULL;
+}
 
 const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                           const char *text) {
-  for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
-    const strut_spelling *spelling = &spellings[i];
-    if (spelling->section != section || !spelling->key != !key ||
-        (key && strcmp(spelling->key, key) != 0))
-      continue;
-    if (strcmp(spelling->other, text) == 0) return spelling;
-  }
+  const strut_spelling *spelling;
+  for (size_t i = 0; (spelling = strut_spelling_at(i)); i++)
+    if (spelling->section == section && strcmp(spelling->other, text) == 0 &&
+        (key && spelling->key ? strcmp(spelling->key, key) == 0 : key == spelling->key))
+      return spelling;
   return NULL;
 }
 
@@ -128,15 +145,11 @@ const strut_spelling *strut_spelling_at(size_t i) {
   return i < sizeof spellings / sizeof spellings[0] ? &spellings[i] : NULL;
 }
 
-int strut_spelling_index(const strut_spelling *spelling) {
-  int index = (int)(spelling - spellings);
-  assert(index >= 0 && (index < 32 || spelling->kind != STRUT_SPELLING_FORMER));
-  return index;
-}
+int strut_spelling_index(const strut_spelling *spelling) { return (int)(spelling - spellings); }
 
 const char *strut_key_current(strut_section section, const char *name) {
   const strut_spelling *spelling = strut_spelling_find(section, NULL, name);
-  return spelling && spelling->kind != STRUT_SPELLING_MISTAKE ? spelling->current : name;
+  return spelling ? spelling->current : name;
 }
 
 strut_section strut_section_find(const char *name) {

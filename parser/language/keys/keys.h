@@ -211,8 +211,7 @@ STRUT_API int strut_section_size(strut_section section);
 STRUT_API int strut_key_find(strut_section section, const char *name);
 typedef enum strut_spelling_kind {
   STRUT_SPELLING_SYNONYM, /* accepted */
-  STRUT_SPELLING_FORMER,  /* a former name, accepted with a note */
-  STRUT_SPELLING_MISTAKE  /* not accepted: what a message suggests for it */
+  STRUT_SPELLING_FORMER   /* a former name, accepted with a note */
 } strut_spelling_kind;
 
 /** Another spelling of a key, or of a word of a key. */
@@ -226,9 +225,11 @@ typedef struct strut_spelling {
 /** The other spelling of a key (`key` NULL) or of a word, or NULL. */
 STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                                     const char *text);
+/** What a message suggests for a likely first guess of a key, such as "k"; NULL if it is none. */
+STRUT_API const char *strut_key_meant(strut_section section, const char *guess);
 /** The i-th spelling, or NULL after the last. */
 STRUT_API const strut_spelling *strut_spelling_at(size_t i);
-/** The number of a spelling; below 32 for former names. */
+/** The number of a spelling, below 32. */
 STRUT_API int strut_spelling_index(const strut_spelling *spelling);
 /** The current name of a key: `name` itself, unless it is a former one. */
 STRUT_API const char *strut_key_current(strut_section section, const char *name);

@@ -45,8 +45,8 @@ static const char *name_of_sections(const void *context, size_t i) {
 static const char *nearest_key(strut_reader *reader, const char *text,
                                const sections_context *context) {
   for (size_t i = 0; i < context->count; i++) {
-    const strut_spelling *spelling = strut_spelling_find(context->sections[i], NULL, text);
-    if (spelling) return spelling->current;
+    const char *meant = strut_key_meant(context->sections[i], text);
+    if (meant) return meant;
   }
   if (strlen(text) > 64 || !strut_hints_left(reader)) return NULL;
   return strut_did_you_mean(text, name_of_sections, context);
@@ -123,7 +123,7 @@ int strut_key_named(strut_reader *reader, strut_section section, const strut_tre
   int found = strut_key_find(section, key->text);
   if (found >= 0) return found;
   const strut_spelling *spelling = strut_spelling_find(section, NULL, key->text);
-  if (!spelling || spelling->kind == STRUT_SPELLING_MISTAKE) return -1;
+  if (!spelling) return -1;
   note_spelling(reader, spelling, key->place);
   return strut_key_find(section, spelling->current);
 }
@@ -147,7 +147,7 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
   const strut_spelling *other = value->kind == STRUT_TREE_SCALAR
                                     ? strut_spelling_find(key->section, key->name, value->text)
                                     : NULL;
-  if (other && other->kind != STRUT_SPELLING_MISTAKE) {
+  if (other) {
     note_spelling(reader, other, value->place);
     *word = strut_word_find(key->words, other->current);
     return true;

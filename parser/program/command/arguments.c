@@ -134,11 +134,10 @@ static strut_status read_word(const strut_option *option, const strut_arguments 
       option->key ? strut_spelling_find(key->section, key->name, to->text) : NULL;
   char text[STRUT_MESSAGE_MOST / 2], copies[MOST_WORDS][WORD];
   const char *words[MOST_WORDS];
-  bool accepted = other && other->kind != STRUT_SPELLING_MISTAKE;
-  if (accepted && other->kind == STRUT_SPELLING_FORMER)
+  if (other && other->kind == STRUT_SPELLING_FORMER)
     strut_tell(arguments->listener, STRUT_MESSAGE_NOTE, arguments->command->name,
                "'%s' is now called '%s'", other->other, other->current);
-  to->index = strut_word_find(strut_option_words(option), accepted ? other->current : to->text);
+  to->index = strut_word_find(strut_option_words(option), other ? other->current : to->text);
   if (to->index >= 0) return STRUT_OK;
   for (int i = 0; i < MOST_WORDS; i++) words[i] = strut_option_word(option, i, copies[i], WORD);
   return strut_usage_error(

@@ -69,8 +69,7 @@ static void put_words(schema *self, const strut_key *key) {
   const strut_spelling *spelling;
   open_words(self, key->words);
   for (size_t i = 0; (spelling = strut_spelling_at(i)); i++)
-    if (spelling->section == key->section && spelling->key &&
-        strcmp(spelling->key, key->name) == 0 && spelling->kind != STRUT_SPELLING_MISTAKE)
+    if (spelling->section == key->section && spelling->key && strcmp(spelling->key, key->name) == 0)
       put_text_member(self, NULL, spelling->other);
   if (strcmp(key->words, "no|yes") == 0) {
     put_member(self, NULL, "false");
@@ -398,8 +397,7 @@ static void put_property(schema *self, const strut_key *key) {
 static void put_former_names(schema *self, strut_section section) {
   const strut_spelling *spelling;
   for (size_t i = 0; (spelling = strut_spelling_at(i)); i++) {
-    if (spelling->section != section || spelling->key || spelling->kind == STRUT_SPELLING_MISTAKE)
-      continue;
+    if (spelling->section != section || spelling->key) continue;
     open_object(self, spelling->other);
     put_text_member(self, "deprecationMessage", "former name");
     put_value(self, strut_key_at(strut_key_find(section, spelling->current)));

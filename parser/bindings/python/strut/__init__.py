@@ -15,12 +15,12 @@ from ._results import Equilibria, Equilibrium, Form, Matrices, Modes, Path, Resu
 from ._scene import Scene, load, loads, run
 from ._simulation import Motion, Simulation
 from ._strut import models, version as __version__
-from ._studies import Fit, Study, compare, fit, sweep, tradeoff
+from ._studies import Comparison, Fit, Study, compare, fit, sweep, tradeoff
 from ._sweep import Table
 from ._values import Frozen as _Frozen, Named, Words, hinted as _hinted, unknown as _unknown
 
 __all__ = [  # fmt: skip
-    "Equilibria", "Equilibrium", "Error", "FileError", "Fit", "Form", "Matrices", "MemoryError", "Message",
+    "Comparison", "Equilibria", "Equilibrium", "Error", "FileError", "Fit", "Form", "Matrices", "MemoryError", "Message",
     "MissingFileError", "Modes", "Motion", "Named", "Path", "Result", "Rigidity", "Run", "RunError", "Scene",
     "SceneError", "Simulation", "Study", "Table", "UsageError", "Words", "compare", "fit", "load", "loads", "models",
     "run", "sweep", "tradeoff",

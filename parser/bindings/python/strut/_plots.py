@@ -6,13 +6,13 @@ from __future__ import annotations
 import html
 import math
 import re
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence
 
 from ._errors import in_python
 from ._values import COMPONENTS, UnknownName, numpy, unknown
 
 if TYPE_CHECKING:
-    from ._results import Equilibria, Modes, Path, Run
+    from ._results import Equilibria, Modes, Path, Result, Run
     from ._scene import Scene
     from ._sweep import Table
 
@@ -158,28 +158,50 @@ def structure(scene: Scene, nodes: Any, force: Any, ax: Any) -> Any:
 
 
 def sweep(table: Table, column: str | None, ax: Any) -> Any:
-    """A column over the parameter, or as a map over the two parameters, that vary."""
+    """A column over the parameter, or as a map over the two parameters, that vary; without these over the first column."""
     if column is None:
-        kept = [name for name in table.columns[len(table.axes) :] if name in table.units]
+        kept = [name for name in table.columns[len(table.axes) :] if name in table.units and name != "accuracy_kept"]
         if not kept:
             raise ValueError("the table has no column of numbers to plot")
-        column = kept[0]
-    over = [name for name, count in zip(table.axes, table.shape) if count > 1] or [*table.axes[:1]]
+        column = kept[0 if table.axes else -1]
+    over = [name for name, count in zip(table.axes, table.shape) if count > 1] or [table.columns[0]]
     if len(over) not in (1, 2) or len(table.shape) < len(table.axes):
         raise ValueError("plot() shows a column over one or two axes; choose the points that vary in these")
     scales = [Scale(table[name], table.units.get(name)) for name in (*over, column)]
     ax = axes(ax)
     ax.set_xlabel(scales[0].label(over[0]))
     if len(over) == 1:
-        ax.plot(scales[0](table[over[0]]), scales[1](table[column]), "o-", markersize=3)
+        ax.plot(scales[0](table[over[0]]), scales[1](table[column]), "o-" if table.axes else "o", markersize=3)
         ax.set_ylabel(scales[1].label(column))
         return ax
-    x, y, z = (
-        scale(table.grid(name).squeeze()) for scale, name in zip(scales, (*over, column))
-    )
+    x, y, z = (scale(table.grid(name).squeeze()) for scale, name in zip(scales, (*over, column)))
     colours = ax.pcolormesh(x, y, z, shading="nearest")
     ax.figure.colorbar(colours, ax=ax, label=scales[2].label(column))
     ax.set_ylabel(scales[1].label(over[1]))
+    return ax
+
+
+def residuals(rows: Sequence[Mapping[str, str]], ax: Any) -> Any:
+    """Residuals over where they were measured, dots for each quantity of each match."""
+    ax = axes(ax)
+    for name in dict.fromkeys((row["match"], row["of"]) for row in rows):
+        own = [row for row in rows if (row["match"], row["of"]) == name]
+        at = [float(row["at"] or i + 1) for i, row in enumerate(own)]
+        ax.plot(at, [float(row["residual"]) for row in own], "o", markersize=3, label=": ".join(name))
+    ax.set(xlabel="at", ylabel="residual in multiples of the noise")
+    ax.legend()
+    return ax
+
+
+def bars(result: Result, value: str, ax: Any) -> Any:
+    """A value of all models that have it, a bar for each."""
+    known = {m["model"]: m["values"][value] for m in result.models if m["values"].get(value) is not None}
+    if not known:
+        raise UnknownName(f"no model has a value '{value}'; models[0]['values'] lists them")
+    values = numpy().array([*known.values()])
+    scale, ax = Scale(values, result.units.get(value)), axes(ax)
+    ax.bar([*known], scale(values))
+    ax.set_ylabel(scale.label(value))
     return ax
 
 
