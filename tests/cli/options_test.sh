@@ -99,7 +99,7 @@ expect 0 run hung.yaml --quiet --json
 tells 2 "error: --set hung=bal: unknown node 'bal' in parameter 'hung'; did you mean 'ball'" run hung.yaml --set hung=bal
 tells 2 "unknown node 'foot' in parameter 'hung'; the names here are 'ball', 'top'" run hung.yaml --set hung=foot
 tells 2 "note: the parameter is used here" run hung.yaml --set hung=foot
-# So in expressions and keys of positions, and in parts, whose placements give it; only a group is named itself.
+# So in expressions and keys of positions, and in parts, whose placements give it, and for groups.
 sed 's/^run: .*/run: {duration: seconds, measure: {quantities: {far: {of: hung.y, take: final}}}}/' hung.yaml >far.yaml
 echo 'initial: {positions: {hung: [0, 10 mm]}}' >>far.yaml
 expect 0 run far.yaml --quiet --json
@@ -124,7 +124,12 @@ shows 0 "two.drive: {member: two.right" export arms.yaml
 shows 0 "three.drive: {member: three.right" export arms.yaml
 tells 2 "unknown member 'rigt' in parameter 'driven'; did you mean 'right'" export arms.yaml --set which=rigt
 sed 's/ball: {position: \[0, 0\], mass: mass}/ball: {position: [0, 0], group: hung}/' hung.yaml >group.yaml
-tells 2 "unknown group 'hung' in 'group' of node 'ball'; a text parameter cannot name a group" check group.yaml
+tells 2 "unknown group 'ball' in parameter 'hung'" check group.yaml
+echo 'groups: {ball: {mass: mass}, spare: {mass: 3 kg}}' >>group.yaml
+expect 0 run group.yaml --quiet --json
+cp out one
+expect 0 run hung.yaml --quiet --json
+[ "$(grep energy one)" = "$(grep energy out)" ] || fail "a group by a text parameter: $(cat out)"
 sed 's/duration: seconds/duration: mass/' hop.yaml >heavy.yaml
 tells 2 "found a mass; line 2 gives 'mass'" check heavy.yaml
 

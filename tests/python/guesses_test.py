@@ -19,10 +19,8 @@ ROBOT = MODELS / "basics/robot.yaml"
 class Guesses(unittest.TestCase):
     def test_values_by_name(self):
         robot = strut.load(ROBOT)
-        self.assertEqual(robot["frequency"], 5.0)
-        self.assertEqual(robot["parameters.friction"], 0.4)
-        self.assertIsNone(robot.get("run.duration"))
-        self.assertEqual(robot["nodes"]["top"].position, (0.05, 0.06))
+        self.assertEqual((robot["frequency"], robot["parameters.friction"]), (5.0, 0.4))
+        self.assertEqual((robot.get("run.duration"), robot["nodes"]["top"].position), (None, (0.05, 0.06)))
         self.assertRaisesRegex(KeyError, "did you mean 'frequency'", lambda: robot["frequncy"])
         for name, said in (("equlibria", "did you mean 'equilibria'"), ("frequency", r"scene\['frequency'\]"),
                            ("copy", "scene.NAME=VALUE."), ("save", "to_yaml"), ("film", "--animate")):
@@ -231,6 +229,9 @@ class Guesses(unittest.TestCase):
         with self.assertRaisesRegex(strut.SceneError, "^mine.yaml:2:1: ") as caught:
             strut.tradeoff(bare)
         self.assertNotIn("strut-", caught.exception.report)  # the folder of the call
+        deep, bare = f"{pathlib.Path(strut.__file__).parents[1]}/a/b/c/studies.py", {"PATH": "", "STRUT": ""}
+        with unittest.mock.patch.object(strut._studies, "__file__", deep), unittest.mock.patch.dict(os.environ, bare):
+            self.assertRaises(FileNotFoundError, strut._studies._program)  # not one that is far above
         self.assertRaisesRegex(AttributeError, "did you mean 'load'", lambda: strut.laod)
         self.assertRaisesRegex(AttributeError, "strut.load", lambda: strut.Model)
 

@@ -311,7 +311,7 @@ TEST(other_spellings) {
   static const char text[] =
       "strut: 1\n"
       "groups: {soft: {kind: string, stiffness: 10, damping: 1}}\n"
-      "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n"
+      "nodes: {a: {position: [0, 0], fixed: xy}, b: {position: [1, 0], mass: 1}}\n"
       "members: {m: {group: soft, nodes: [a, b]}, n: {kind: strut, stiffness: 5, nodes: [a, b]}}\n"
       "actuators: {d: {member: m, signal: {sine: {amplitude: 1e-3, frequency: 1}}}}\n"
       "ground: {height: -1, stiffness: 10, damping_law: printed}\n"
@@ -323,6 +323,7 @@ TEST(other_spellings) {
       strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics));
   assert_all_equal(s.scene.members[0].kind, STRUT_CABLE, s.scene.members[1].kind, STRUT_BAR,
                    s.scene.ground.damping_law, STRUT_DAMPING_APPROACH);
+  assert_true(s.scene.nodes[0].fixed[0] && s.scene.nodes[0].fixed[1]);
   assert_true(s.experiment.steady.floor == 1e-3 && s.experiment.steady.successive == 3);
   const char *notes = strut_diagnostics_render_notes(&diagnostics);
   assert_non_null(strstr(notes, "test.yaml:6:50: note: 'printed' is now called 'approach_only'\n"));

@@ -397,7 +397,7 @@ static const char *unit_of_match(const strut_fit_match *match) {
   X("noise", "", IF(r->match->noise > 0.0, IN(r->match->noise_unit, r->match->noise)),             \
     "standard deviation of the numbers, as given", .label = {""})                                  \
   X("excess", "1", IF(find_excess(result_of(of), r) > 0.0, NUMBER(find_excess(result_of(of), r))), \
-    "the noise given is so many times what the residuals show", .label = {"noise too large by"})   \
+    "factor by which the noise given exceeds the residuals", .label = {"noise too large by"})      \
   X("chi_square", "1", IF(!isnan(r->chi_square), NUMBER(r->chi_square)),                           \
     "sum of squared residuals in units of the noise", .label = {"chi square"})                     \
   X("lag", "1", IF(!isnan(r->lag), NUMBER(r->lag)),                                                \

@@ -79,6 +79,7 @@ static const strut_spelling spellings[] = {
     {STRUT_SECTION_MEMBER, "kind", "strut", "bar", STRUT_SPELLING_SYNONYM},
     {STRUT_SECTION_MEMBER, "kind", "string", "cable", STRUT_SPELLING_SYNONYM},
     {STRUT_SECTION_NODE, "fixed", "true", "both", STRUT_SPELLING_SYNONYM},
+    {STRUT_SECTION_NODE, "fixed", "xy", "both", STRUT_SPELLING_SYNONYM},
     {STRUT_SECTION_NODE, "fixed", "false", "none", STRUT_SPELLING_SYNONYM}};
 
 /* Likely first guesses of keys, and the key that is meant; a dotted one is of another mapping. */

@@ -470,8 +470,12 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
   const strut_namespace names = {"group", &reader->group_names, strut_row_name,
                                  STRUT_NAMED(reader->groups, reader->group_count),
                                  reader->group_count};
-  for (; item && known; item = value == item ? NULL : item->next)
-    if (strut_read_name_of(reader, item, key, owner, &names) < 0) fine = false;
+  for (; item && known; item = value == item ? NULL : item->next) {
+    if (strut_read_name_of(reader, item, key, owner, &names) < 0)
+      fine = false;
+    else if (strut_find_literally(reader, names.map, item, item->text) < 0)
+      reader->groups_unknown = true; /* another value of the parameter may use any other group */
+  }
   return fine && known;
 }
 

@@ -350,11 +350,7 @@ static const char *local_name(const void *context, size_t i) {
 static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
                                  const strut_namespace *namespace) {
   const local_names within = {reader, namespace};
-  strut_tree text;
   const char *word = value->text, *hint = strut_copy_hint(reader, value);
-  if (namespace->map == &reader->group_names &&
-      strut_text_parameter(reader, strut_scope_of(reader, value), word, &text))
-    return "; a text parameter cannot name a group";
   if (!*hint && reader->scope)
     hint = strut_hint(reader, word, local_name, &within, namespace->count);
   if (*hint) return hint;
@@ -407,8 +403,7 @@ int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const 
     return -1;
   }
   strut_tree text;
-  if (names->map != &reader->group_names &&
-      strut_text_parameter(reader, strut_scope_of(reader, value), value->text, &text))
+  if (strut_text_parameter(reader, strut_scope_of(reader, value), value->text, &text))
     return find_named_by_parameter(reader, value, &text, names);
   int32_t index = strut_find_named(reader, names->map, value, value->text);
   const strut_parameter_state *meant =

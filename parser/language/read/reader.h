@@ -170,7 +170,7 @@ typedef struct strut_reader {
   bool holes;          /* refused parts are missing from the tree: absent keys are not reported */
   bool ends_unknown;   /* some member or load could not be tied to its nodes */
   bool masses_unknown; /* some mass could not be read */
-  bool groups_unknown; /* the groups of some thing could not be read */
+  bool groups_unknown; /* of some thing: not read, or named by a parameter */
   bool failed, out_of_memory;
   strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
   strut_copy *scope;           /* the copy of which a thing is being read; NULL: the scene's own */

@@ -247,8 +247,8 @@ int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
                          const strut_tree *value, const char *text) {
   strut_tree given;
   int32_t index = strut_find_literally(reader, map, value, text);
-  bool by_parameter = index < 0 && map != &reader->group_names &&
-                      strut_text_parameter(reader, strut_scope_of(reader, value), text, &given);
+  bool by_parameter =
+      index < 0 && strut_text_parameter(reader, strut_scope_of(reader, value), text, &given);
   return by_parameter ? strut_find_literally(reader, map, value, given.text) : index;
 }
 
