@@ -33,7 +33,7 @@ static const double MOST_STEPS = 1e15;
 /* At the limit itself a motion may grow; what rounding leaves of a limit does not matter. */
 static const double AT_LIMIT = 1.0 - 1e-9;
 
-static strut_status check_step_limit(const strut_run *run, bool bound) {
+static strut_status check_step_limit(const strut_run *run) {
   double limit = run->summary->step_limit, duration = (double)(run->steps - run->first) * run->dt;
   if (run->dt < AT_LIMIT * limit || run->options->force) return STRUT_OK;
   if (!(limit * MOST_STEPS > duration))
@@ -42,12 +42,6 @@ static strut_status check_step_limit(const strut_run *run, bool bound) {
                       "small for a run of %.4g s: stiffnesses or dampings are far too large beside "
                       "the masses; check their units",
                       run->method->name, limit, duration);
-  if (bound)
-    return strut_fail(run->error, STRUT_STEP_TOO_LARGE,
-                      "the step %g s is above %.4g s, a bound below which %s is stable (all "
-                      "contacts closed; the structure is too large to compute its largest stable "
-                      "step); use solver.step <= %.3g s, or --force to run anyway",
-                      run->dt, limit, run->method->name, 0.99 * limit);
   return strut_fail(run->error, STRUT_STEP_TOO_LARGE,
                     "the step %g s is %s the largest stable step of %s, %.4g s (all contacts "
                     "closed); use solver.step <= %.2g s, or --force to run anyway",
@@ -209,14 +203,13 @@ static strut_status prepare_run(strut_run *run) {
     return status;
   if ((status = check_turns(run))) return status;
   run->summary->feedback = strut_scene_has_feedback(scene);
-  double *limit = &run->summary->step_limit;
-  bool bound = false;
-  status = strut_step_limit_with_bound(run->model, run->method, limit, &bound, run->error);
+  status =
+      strut_step_limit_for_method(run->model, run->method, &run->summary->step_limit, run->error);
   if (status) return status;
   if (!run->options->force &&
       (status = strut_step_limit_check_effort(run->model, run->method, run->dt, run->error)))
     return status;
-  if ((status = check_step_limit(run, bound)) || (status = allocate_summary(run)) ||
+  if ((status = check_step_limit(run)) || (status = allocate_summary(run)) ||
       (status = strut_state_create(run->model, &run->state, run->error)))
     return status;
   const strut_integrator_settings settings = strut_integrator_settings_of(run->experiment);

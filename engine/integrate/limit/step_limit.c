@@ -121,9 +121,7 @@ const strut_region_data *strut_region_at(strut_region region) {
  * signs of K and D, so that no false eigenvalue lies beyond the true ones, with vectors half as long;
  * ARPACK, a floor above, knows the first-order form only.
  */
-enum { ROOM = 64, LARGE_ROOM = 48, LARGE = 100000, MOST_ROUNDS = 14 };
-/* From here on a search would take tens of seconds, and the bound is reported. */
-enum { TOO_LARGE = 250000 };
+enum { ROOM = 64, MOST_ROUNDS = 14 };
 /* Quotients come from below; the space has converged to a fraction of this. */
 static const double MARGIN = 0.998, SETTLED = 2e-4;
 
@@ -132,7 +130,7 @@ typedef struct search {
   strut_arena *arena;
   strut_krylov_basis space;
   strut_tangent_limits found;
-  bool damped, rk4, settled;
+  bool damped, rk4;
   double *x, *y, *other, *mix, *work; /* (n) twice and (n), coefficients */
 } search;
 
@@ -249,7 +247,6 @@ static bool improve(search *self) {
     if (!find(self)) return false;
     quiet = fallen(found, before) < SETTLED ? quiet + 1 : 0;
   }
-  self->settled = quiet >= 2;
   return true;
 }
 
@@ -258,18 +255,6 @@ static void tell_found(const search *self, bool all, strut_step_limit *limit) {
   limit->largest_frequency = self->found.largest_frequency;
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of[region] = limit->exact ? self->found.of[region] : MARGIN * self->found.of[region];
-}
-
-/* What all motions keep to, in place of what could not be found. */
-static bool tell_bound(const strut_model *model, const strut_tangent *tangent, strut_arena *arena,
-                       strut_step_limit *limit) {
-  strut_tangent_bound bound;
-  if (!strut_tangent_bound_find(model, tangent, arena, &bound)) return false;
-  limit->exact = false;
-  limit->bound = true;
-  limit->largest_frequency = bound.frequency;
-  memcpy(limit->of, bound.of, sizeof limit->of);
-  return true;
 }
 
 /* Signals with a lag and Maxwell branches relax by themselves at these rates, at most [1/s]. */
@@ -306,19 +291,10 @@ static strut_status limits(const strut_model *model, const double *positions, co
   if ((model->terms & STRUT_TERM_RIGID) &&
       !(tangent.rigid = strut_rigid_standing(model, positions, arena)))
     return STRUT_NO_MEMORY;
-  bool all = tangent.n <= STRUT_EXACT_LIMIT, room = true;
-  if (tangent.rigid || tangent.n <= TOO_LARGE) {
-    int32_t n = tangent.n; /* few: all motions; many: those that bind */
-    room = begin(&s, model,
-                 all         ? n
-                 : n > LARGE ? LARGE_ROOM
-                             : ROOM) &&
-           (all ? take_all(&s) : look_around(&s) && improve(&s));
-    if (room) tell_found(&s, all, limit);
-  }
-  if (room && !tangent.rigid && tangent.n > LARGE && !s.settled)
-    room = tell_bound(model, &tangent, arena, limit);
-  if (!room) return STRUT_NO_MEMORY;
+  bool all = tangent.n <= STRUT_EXACT_LIMIT; /* few: all motions; many: those that bind */
+  if (!begin(&s, model, all ? tangent.n : ROOM)) return STRUT_NO_MEMORY;
+  if (!(all ? take_all(&s) : look_around(&s) && improve(&s))) return STRUT_NO_MEMORY;
+  tell_found(&s, all, limit);
   limit->limit = limit->of[STRUT_REGION_RK4];
   keep_to_relaxation(model, limit);
   return STRUT_OK;
@@ -332,27 +308,19 @@ static bool ground_damps(const strut_model *model) {
   return damped;
 }
 
-strut_status strut_step_limit_with_bound(const strut_model *model, const strut_integrator *method,
-                                         double *limit, bool *bound, strut_error *error) {
+strut_status strut_step_limit_for_method(const strut_model *model, const strut_integrator *method,
+                                         double *limit, strut_error *error) {
   strut_arena arena = {0};
   strut_step_limit found;
   *limit = HUGE_VAL;
-  *bound = false;
   if (strut_region_at(method->region)->sets == 0) return STRUT_OK;
   bool undamped = method->implicit_damper && ground_damps(model);
   strut_status status = limits(model, model->start, model->members.rest,
                                undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
                                strut_region_at(method->region)->by_eigenvalue, &arena, &found);
   *limit = found.of[method->region];
-  *bound = found.bound;
   strut_arena_free(&arena);
   return status ? strut_no_memory(error, "for the model") : STRUT_OK;
-}
-
-strut_status strut_step_limit_for_method(const strut_model *model, const strut_integrator *method,
-                                         double *limit, strut_error *error) {
-  bool bound;
-  return strut_step_limit_with_bound(model, method, limit, &bound, error);
 }
 
 strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
@@ -368,7 +336,6 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
                     &implicit);
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = implicit.of[region];
-  limit->bound = limit->bound || implicit.bound;
   strut_arena_free(&arena);
   return status ? strut_no_memory(error, "for the model") : STRUT_OK;
 }

@@ -39,17 +39,14 @@ typedef struct strut_step_limit {
   double limit;             /* largest stable RK4 step [s]; INFINITY where nothing limits it */
   double of[STRUT_REGIONS]; /* largest stable step of each region, RK4's being `limit` */
   double of_implicit[STRUT_REGIONS]; /* where the ground's dampers are implicit */
-  bool exact; /* from all eigenvalues; else from those that bind, within 1 %, or bounds */
-  bool
-      bound; /* some are bounds: all smaller steps are stable, the largest stable one is not known */
+  bool exact; /* from all eigenvalues; else from those that bind, within 1 % */
 } strut_step_limit;
 
 /**
  * Limits at the model's start with every contact closed, its stiffness and damping counted. Up to
  * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
  * those that bind, from a space of motions that grows until they have settled: within 1 %, whatever
- * the damping. Above 250000 coordinates, and above 100000 where they do not settle, bounds from the
- * entries of the matrices (tangent_limits.h) are reported. The model must have a mass.
+ * the damping. The model must have a mass.
  */
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);
@@ -63,11 +60,6 @@ STRUT_API strut_status strut_step_limit_at_shape(const strut_model *model, const
 STRUT_API strut_status strut_step_limit_for_method(const strut_model *model,
                                                    const strut_integrator *method, double *limit,
                                                    strut_error *error);
-
-/** The same; *bound: it is a bound. */
-STRUT_API strut_status strut_step_limit_with_bound(const strut_model *model,
-                                                   const strut_integrator *method, double *limit,
-                                                   bool *bound, strut_error *error);
 
 /**
  * STRUT_STEP_TOO_LARGE with the reason where a method that controls its error would take more than 1e9 steps in
@@ -102,7 +94,7 @@ typedef struct strut_cost_estimate {
   double largest_frequency; /* undamped, all contacts closed [rad/s] */
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
   strut_step_limit limits;  /* of every method: strut_step_limit_of_method */
-  bool step_limit_exact;    /* from all eigenvalues; else within 1 %, or limits.bound */
+  bool step_limit_exact;    /* from all eigenvalues; else within 1 % */
 } strut_cost_estimate;
 
 /** Estimates the cost of a compiled model. */

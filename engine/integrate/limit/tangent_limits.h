@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Limits of the step from the tangent: the Krylov basis, the bound from entries, the limits themselves. */
+/** Limits of the step from the tangent: the Krylov basis, the limits themselves. */
 #pragma once
 
 #include <stdbool.h>
@@ -46,24 +46,6 @@ void strut_krylov_basis_shrink(strut_krylov_basis *space, double *c, int rows, d
  * the same three-term recurrence, so that no vectors but those wanted are kept. False: no memory.
  */
 bool strut_lanczos_limits(strut_krylov_basis *space, double a, double b);
-
-/* How stiff small motions can be at most, from the entries of their matrices: bounds, not estimates.
- *
- * For any positive weights z and any masses m with M - diag(m) positive semidefinite, no quotient of
- * |A| over M exceeds the largest (|A| z)_i / (m_i z_i) (Collatz, Wielandt). Weights that a few
- * multiplications by the matrix itself improve make that close. Each pass costs two multiplications.
- */
-
-/** What all motions keep to. */
-typedef struct strut_tangent_bound {
-  double frequency;         /* none of the undamped is above [rad/s] */
-  double rate;              /* largest quotient of D over M [1/s] */
-  double of[STRUT_REGIONS]; /* steps that are stable [s]; INFINITY where nothing limits them */
-} strut_tangent_bound;
-
-/** The model must have a mass. Scratch is in the arena; false: out of memory. */
-STRUT_API bool strut_tangent_bound_find(const strut_model *model, const strut_tangent *tangent,
-                                        strut_arena *arena, strut_tangent_bound *bound);
 
 /* The eigenvalues of a space of motions that bind each method's step, and the motions they belong to.
  *

@@ -95,27 +95,19 @@ static void iterate_power(const strut_model *model, const strut_state *state,
   set->strength = weight > 0.0 ? work / weight : 0.0;
 }
 
-/*
- * Step limit of a shape; HUGE_VAL where memory is out. Where only a bound is available and the
- * iterated motions are of this shape, at least the limit that they show: a bound alone must not
- * stop a run.
- */
+/* Step limit of a shape; HUGE_VAL where memory is out. */
 static double find_limit(const strut_model *model, const strut_step_limit_monitor *monitor,
-                         const double *positions, const double *rest, bool of_this_shape) {
+                         const double *positions, const double *rest) {
   strut_closed closed =
       monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_step_limit limit;
   if (strut_step_limit_at_shape(model, positions, rest, closed, &limit, NULL)) return HUGE_VAL;
-  double bound = limit.of[monitor->method->region], seen = HUGE_VAL;
-  if (!limit.bound || !of_this_shape) return bound;
-  for (int i = 0; i < monitor->count; i++)
-    seen = fmin(seen, monitor->step / monitor->set[i].strength);
-  return fmax(bound, seen);
+  return limit.of[monitor->method->region];
 }
 
 static void update_limit(const strut_model *model, const strut_state *state,
                          strut_step_limit_monitor *monitor) {
-  monitor->known_limit = find_limit(model, monitor, state->q, state->latest->rest, true);
+  monitor->known_limit = find_limit(model, monitor, state->q, state->latest->rest);
   for (int i = 0; i < monitor->count; i++) {
     strut_monitored_set *set = &monitor->set[i];
     set->known = set->strength;
@@ -169,16 +161,14 @@ void strut_step_limit_monitor_sample(const strut_model *model, const strut_state
 
 double strut_step_limit_monitor_last_limit(const strut_model *model,
                                            const strut_step_limit_monitor *monitor) {
-  return monitor->count > 0 ? find_limit(model, monitor, monitor->shape, monitor->rest, false)
-                            : HUGE_VAL;
+  return monitor->count > 0 ? find_limit(model, monitor, monitor->shape, monitor->rest) : HUGE_VAL;
 }
 
 void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state,
                                     strut_step_limit_monitor *monitor) {
   if (monitor->count == 0) return;
   double before = strut_step_limit_monitor_last_limit(model, monitor);
-  monitor->known_limit =
-      fmin(before, find_limit(model, monitor, state->q, state->latest->rest, false));
+  monitor->known_limit = fmin(before, find_limit(model, monitor, state->q, state->latest->rest));
   if (monitor->known_limit < monitor->step)
     record_violation(monitor, (double)monitor->last * monitor->step, 0);
 }

@@ -17,6 +17,7 @@ static uint64_t branch_of(strut_operation operation, double a, double b, double 
   switch ((int)operation) {
     case STRUT_OPERATION_ABS:
     case STRUT_OPERATION_POWER: return a < 0.0; /* an even one has a root with a kink */
+    case STRUT_OPERATION_MULTIPLY: return a == b && a < 0.0; /* a square */
     case STRUT_OPERATION_HYPOT: return (uint64_t)(a < 0.0) << 1 | (uint64_t)(b < 0.0);
     case STRUT_OPERATION_MIN:
     case STRUT_OPERATION_MAX: return b < a;

@@ -252,14 +252,12 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
   X("step_limit", "s", KNOWN(e->runnable, NUMBER(e->step_limit)), "largest stable one of rk4")     \
   X(NULL, "",                                                                                      \
     TEXT(!e->runnable          ? NULL                                                              \
-         : e->limits.bound     ? "bounds: the structure is too large for estimates"                \
          : e->step_limit_exact ? "from all eigenvalues"                                            \
                                : "within 1 %"),                                                    \
     "", .label = {"step limits"})                                                                  \
   X(NULL, "", TEXT(e->feedback ? "not counted in this frequency and these steps" : NULL), "",      \
     .label = {"feedback"})                                                                         \
   X("step_limit_exact", "", FLAG(e->step_limit_exact), "or within 1 %")                            \
-  X("step_limit_bound", "", FLAG(e->limits.bound), "the limits are lower bounds")                  \
   X("step_limits", "s", MAP(e->runnable ? method_count() : 0, method_name, method_limit),          \
     "of all methods", .label = {"largest step of"})                                                \
   THINGS(X, member, members)                                                                       \
