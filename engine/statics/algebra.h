@@ -151,9 +151,9 @@ typedef struct strut_spectrum {
 
 /** Memory for computations with n free coordinates; for one thread at a time. */
 typedef struct strut_spectrum_workspace strut_spectrum_workspace;
-/** NULL: out of memory. */
-strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential);
-void strut_spectrum_free(strut_spectrum_workspace *room);
+/** In the arena; NULL: out of memory. */
+strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential,
+                                                strut_arena *arena);
 
 /**
  * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`:

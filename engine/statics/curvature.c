@@ -106,36 +106,23 @@ struct strut_curvature {
   uint8_t *idle;          /* (n) modes to leave alone */
   double multiplier;      /* of the step that strut_curvature_trust_step gave last */
   double border;          /* between soft and stiff modes for it; NAN: not known yet */
-  strut_arena arena;
 };
 
-void strut_curvature_free(strut_curvature *curvature) {
-  if (!curvature) return;
-  strut_spectrum_free(curvature->spectra);
-  strut_arena_free(&curvature->arena);
-  strut_release(curvature);
-}
-
-strut_status strut_curvature_create(const strut_potential *potential, strut_curvature **curvature,
-                                    strut_error *error) {
-  strut_curvature *c = *curvature = strut_allocate(1, sizeof *c);
-  if (!c) return strut_no_memory(error, "");
+strut_status strut_curvature_create(const strut_potential *potential, strut_arena *arena,
+                                    strut_curvature **curvature, strut_error *error) {
   size_t n = (size_t)potential->n;
   bool modes = potential->n <= STRUT_DENSE_STATICS;
+  strut_curvature *c = *curvature = strut_arena_allocate(arena, 1, sizeof *c);
+  strut_sparse *hessian = strut_potential_matrix(potential, arena);
+  if (!c || !hessian || !STRUT_ALLOCATE(arena, STRUT_NEW(c->idle, n)) ||
+      !STRUT_NUMBERS(arena, n, &c->part, &c->x) ||
+      !STRUT_NUMBERS(arena, (size_t)hessian->start[n], &c->known) ||
+      (modes && !(c->spectra = strut_spectrum_create(potential, arena))))
+    return strut_no_memory(error, "");
   c->potential = potential;
+  c->hessian = hessian;
   c->shift = (double)NAN;
-  c->hessian = strut_potential_matrix(potential, &c->arena);
-  bool good = c->hessian && STRUT_ALLOCATE(&c->arena, STRUT_NEW(c->idle, n)) &&
-              STRUT_NUMBERS(&c->arena, n, &c->part, &c->x) &&
-              STRUT_NUMBERS(&c->arena, (size_t)c->hessian->start[n], &c->known);
-  if (good && modes) good = (c->spectra = strut_spectrum_create(potential));
-  strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
-  if (good && n > FEW_MODES)
-    status = strut_ldl_create(potential->pattern, &c->arena, &c->ldl, error);
-  if (status == STRUT_OK) return status;
-  strut_curvature_free(c);
-  *curvature = NULL;
-  return status;
+  return n > FEW_MODES ? strut_ldl_create(potential->pattern, arena, &c->ldl, error) : STRUT_OK;
 }
 
 /* The modes where the Hessian was decomposed; false: there are too many. */

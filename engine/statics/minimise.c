@@ -27,33 +27,19 @@ struct strut_minimiser {
   const strut_flag *interrupt;
   void (*visit)(void *context, const double *q); /* or NULL */
   void *visitor;
-  strut_arena arena;
 };
 
-strut_status strut_minimiser_create(const strut_potential *potential, strut_minimiser **minimiser,
-                                    strut_error *error) {
-  strut_minimiser *m = *minimiser = strut_allocate(1, sizeof *m);
-  size_t n = (size_t)potential->n, length = (size_t)potential->model->length;
-  if (!m) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+strut_status strut_minimiser_create(const strut_potential *potential, strut_arena *arena,
+                                    strut_minimiser **minimiser, strut_error *error) {
+  strut_minimiser *m = *minimiser = strut_arena_allocate(arena, 1, sizeof *m);
+  if (!m || !STRUT_NUMBERS(arena, potential->n, &m->g, &m->g_trial, &m->step, &m->unbent) ||
+      !STRUT_NUMBERS(arena, potential->model->length, &m->trial, &m->before))
+    return strut_no_memory(error, "");
   m->potential = potential;
   m->size = potential->model->size > 0 ? potential->model->size : 1.0;
   m->longest_step = HUGE_VAL;
   m->first_step = 0.1 * m->size;
-  strut_status status = strut_curvature_create(potential, &m->curvature, error);
-  if (!status && (!STRUT_NUMBERS(&m->arena, n, &m->g, &m->g_trial, &m->step, &m->unbent) ||
-                  !STRUT_NUMBERS(&m->arena, length, &m->trial, &m->before)))
-    status = strut_no_memory(error, "");
-  if (status == STRUT_OK) return status;
-  strut_minimiser_free(m);
-  *minimiser = NULL;
-  return status;
-}
-
-void strut_minimiser_free(strut_minimiser *minimiser) {
-  if (!minimiser) return;
-  strut_curvature_free(minimiser->curvature);
-  strut_arena_free(&minimiser->arena);
-  strut_release(minimiser);
+  return strut_curvature_create(potential, arena, &m->curvature, error);
 }
 
 int64_t strut_minimiser_hessian_count(const strut_minimiser *minimiser) {

@@ -30,11 +30,10 @@ typedef struct strut_descent {
   double step;     /* length of the last Newton step: how far q may still be off [m] */
 } strut_descent;
 
-/** Memory of descents on one potential, for one thread at a time. */
+/** Memory of descents on one potential, for one thread at a time, in the arena. */
 typedef struct strut_minimiser strut_minimiser;
-STRUT_API strut_status strut_minimiser_create(const strut_potential *potential,
+STRUT_API strut_status strut_minimiser_create(const strut_potential *potential, strut_arena *arena,
                                               strut_minimiser **minimiser, strut_error *error);
-STRUT_API void strut_minimiser_free(strut_minimiser *minimiser);
 
 /** Descents end as exhausted soon after the flag is set. NULL: no flag. */
 void strut_minimiser_watch(strut_minimiser *minimiser, const strut_flag *interrupt);
@@ -83,9 +82,9 @@ typedef struct strut_model_step {
 
 /** A decomposition of the Hessian. Rows are those of the potential; all arrays are (n). */
 typedef struct strut_curvature strut_curvature;
-strut_status strut_curvature_create(const strut_potential *potential, strut_curvature **curvature,
-                                    strut_error *error);
-void strut_curvature_free(strut_curvature *curvature);
+/** In the arena. */
+strut_status strut_curvature_create(const strut_potential *potential, strut_arena *arena,
+                                    strut_curvature **curvature, strut_error *error);
 /** Decomposes the Hessian at q, which stays there until the next call; false: not finite, or out of memory. */
 bool strut_curvature_decompose(strut_curvature *curvature, const double *q);
 /** The lowest point of the model within |s| <= radius, or nearly so. still [N]: a force within rounding. */

@@ -9,7 +9,6 @@
 
 struct strut_spectrum_workspace {
   const strut_potential *potential;
-  strut_arena arena;
   strut_sparse *hessian;
   double least;  /* of the spectrum at hand [N] */
   bool uneven;   /* stiffnesses differ by so much that the dense solver may lose the soft ones */
@@ -31,27 +30,19 @@ static bool is_uneven(const strut_model *model) {
   return high > 1e7 * low;
 }
 
-strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential) {
-  strut_spectrum_workspace *room = strut_allocate(1, sizeof *room);
+strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential,
+                                                strut_arena *arena) {
+  strut_spectrum_workspace *room = strut_arena_allocate(arena, 1, sizeof *room);
   size_t n = (size_t)potential->n;
-  if (!room) return NULL;
+  if (!room || !STRUT_ALLOCATE(arena, STRUT_NEW(room->order, n)) ||
+      !STRUT_NUMBERS(arena, n * n, &room->dense, &room->soft, &room->vector, &room->turned) ||
+      !STRUT_NUMBERS(arena, n, &room->raw, &room->value, &room->noise, &room->work, &room->along,
+                     &room->across, &room->form_noise))
+    return NULL;
   room->potential = potential;
   room->uneven = is_uneven(potential->model);
-  room->order = strut_arena_allocate(&room->arena, n, sizeof *room->order);
-  room->hessian = strut_potential_matrix(potential, &room->arena);
-  if (room->order && room->hessian &&
-      STRUT_NUMBERS(&room->arena, n * n, &room->dense, &room->soft, &room->vector, &room->turned) &&
-      STRUT_NUMBERS(&room->arena, n, &room->raw, &room->value, &room->noise, &room->work,
-                    &room->along, &room->across, &room->form_noise))
-    return room;
-  strut_spectrum_free(room);
-  return NULL;
-}
-
-void strut_spectrum_free(strut_spectrum_workspace *room) {
-  if (!room) return;
-  strut_arena_free(&room->arena);
-  strut_release(room);
+  room->hessian = strut_potential_matrix(potential, arena);
+  return room->hessian ? room : NULL;
 }
 
 /* The order of values from small to large; equal ones keep theirs. */

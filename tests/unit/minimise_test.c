@@ -16,13 +16,12 @@ typedef struct fixture {
 static void compile(fixture *f, const uint8_t *held, bool ground) {
   assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
   assert_ok(strut_potential_create(f->model, held, ground, &f->potential, NULL));
-  assert_ok(strut_minimiser_create(f->potential, &f->minimiser, NULL));
+  assert_ok(strut_minimiser_create(f->potential, &f->scene.arena, &f->minimiser, NULL));
   f->q = strut_arena_allocate(&f->scene.arena, (size_t)f->model->length, sizeof *f->q);
   memcpy(f->q, f->model->start, (size_t)f->model->length * sizeof *f->q);
 }
 
 static void fixture_free(fixture *f) {
-  strut_minimiser_free(f->minimiser);
   strut_potential_free(f->potential);
   strut_model_free(f->model);
   strut_scene_free(&f->scene);
@@ -210,9 +209,9 @@ TEST(refused_memory) {
     structure_chain(&f.scene, large ? 40 : 2, STRUT_MASS_LUMPED);
     compile(&f, NULL, false);
     REFUSE_EACH(n, status, 1) {
+      OWN(strut_arena) arena = {0};
       strut_minimiser *m;
-      status = refused(n, strut_minimiser_create(f.potential, &m, NULL));
-      strut_minimiser_free(m);
+      status = refused(n, strut_minimiser_create(f.potential, &arena, &m, NULL));
     }
   }
 }

@@ -234,13 +234,13 @@ static void link_saddles(strut_equilibrium_search *search) {
 static strut_status find_start_state(const strut_equilibrium_search *search, double *positions,
                                      int32_t *state) {
   strut_minimiser *minimiser;
-  strut_status status = strut_minimiser_create(search->potential, &minimiser, search->error);
+  strut_status status =
+      strut_minimiser_create(search->potential, &search->out->arena, &minimiser, search->error);
   if (status) return status;
   strut_minimiser_watch(minimiser, search->options->interrupt);
   memcpy(positions, search->model->start, (size_t)search->model->length * sizeof *positions);
   bool rests = strut_descend_gently(minimiser, positions) == STRUT_DESCENT_REACHED;
   *state = rests ? strut_landscape_find(&search->landscape, positions) : -1;
-  strut_minimiser_free(minimiser);
   return STRUT_OK;
 }
 

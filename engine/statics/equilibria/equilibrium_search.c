@@ -352,8 +352,9 @@ strut_status strut_relaxer_create(const strut_potential *potential, double limit
   relaxer->model = potential->model;
   bool good =
       STRUT_NUMBERS(&relaxer->arena, length, &relaxer->quenched, &relaxer->last, &relaxer->start);
-  strut_status status = good ? strut_minimiser_create(potential, &relaxer->minimiser, error)
-                             : strut_no_memory(error, "");
+  strut_status status =
+      good ? strut_minimiser_create(potential, &relaxer->arena, &relaxer->minimiser, error)
+           : strut_no_memory(error, "");
   if (!status) status = prepare_motion(relaxer, error);
   if (status) {
     strut_relaxer_free(relaxer);
@@ -365,7 +366,6 @@ strut_status strut_relaxer_create(const strut_potential *potential, double limit
 void strut_relaxer_free(strut_relaxer *relaxer) {
   if (!relaxer) return;
   strut_state_free(relaxer->state);
-  strut_minimiser_free(relaxer->minimiser);
   strut_arena_free(&relaxer->arena);
   strut_release(relaxer);
 }

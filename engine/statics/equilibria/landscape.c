@@ -148,8 +148,9 @@ static strut_status passages_find(const strut_potential *potential, const strut_
   way_down way = {model, strut_arena_allocate(&scratch, length, sizeof(double)), -1};
   double *q = strut_arena_allocate(&scratch, length, sizeof *q);
   strut_minimiser *minimiser = NULL;
-  strut_status status = way.last && q ? strut_minimiser_create(potential, &minimiser, error)
-                                      : strut_no_memory(error, "");
+  strut_status status = way.last && q
+                            ? strut_minimiser_create(potential, &scratch, &minimiser, error)
+                            : strut_no_memory(error, "");
   if (status == STRUT_OK) strut_minimiser_visit(minimiser, follow, &way);
   if (status == STRUT_OK) strut_minimiser_watch(minimiser, interrupt);
   for (size_t i = 0; i < set->count && status == STRUT_OK; i++) {
@@ -167,7 +168,6 @@ static strut_status passages_find(const strut_potential *potential, const strut_
       through[i] = way.through;
     }
   }
-  strut_minimiser_free(minimiser);
   strut_arena_free(&scratch);
   return status;
 }

@@ -86,8 +86,9 @@ static bool stays_displaced(const strut_potential *potential, const strut_critic
   size_t length = (size_t)model->length;
   double size = model->size > 0 ? model->size : 1.0, most = 0.0;
   strut_minimiser *minimiser = NULL;
-  double *q = strut_allocate(length, sizeof *q);
-  bool good = q && strut_minimiser_create(potential, &minimiser, NULL) == STRUT_OK, stays = false;
+  strut_arena scratch = {0};
+  double *q = strut_arena_allocate(&scratch, length, sizeof *q);
+  bool good = q && !strut_minimiser_create(potential, &scratch, &minimiser, NULL), stays = false;
   for (int32_t at = 0; at < 2 * model->node_count; at++)
     most = fmax(most, fabs(point->softest[at]));
   double same = 1e-12 * (fabs(point->potential) + strut_stiffest(model) * size * size);
@@ -99,8 +100,7 @@ static bool stays_displaced(const strut_potential *potential, const strut_critic
     stays = end.end == STRUT_DESCENT_REACHED && distance_moved(model, point, q) > AWAY * size &&
             fabs(strut_potential_value(potential, q) - point->potential) <= same;
   }
-  strut_minimiser_free(minimiser);
-  strut_release(q);
+  strut_arena_free(&scratch);
   return stays;
 }
 

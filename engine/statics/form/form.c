@@ -375,7 +375,8 @@ static strut_status polish(strut_former *former, strut_error *error) {
   strut_scene *scene = former->scene;
   strut_status status = strut_model_compile(scene, &model, error);
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
-  if (status == STRUT_OK) status = strut_minimiser_create(potential, &minimiser, error);
+  if (status == STRUT_OK)
+    status = strut_minimiser_create(potential, &former->arena, &minimiser, error);
   if (status == STRUT_OK)
     q = strut_arena_allocate(&former->arena, (size_t)model->length, sizeof *q);
   if (status == STRUT_OK && !q) status = strut_no_memory(error, "");
@@ -393,7 +394,6 @@ static strut_status polish(strut_former *former, strut_error *error) {
       scene->nodes[i].start[c] = q[2 * i + c];
       if (former->form->from == STRUT_FORM_LENGTHS) scene->nodes[i].position[c] = q[2 * i + c];
     }
-  strut_minimiser_free(minimiser);
   strut_potential_free(potential);
   strut_model_free(model);
   return status;

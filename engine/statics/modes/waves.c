@@ -189,11 +189,12 @@ static strut_status settle_cell(const lattice_cell *cell, const strut_experiment
                                 double *q, double *residual, strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
-  double *gradient = strut_allocate((size_t)cell->n, sizeof *gradient);
+  strut_arena scratch = {0};
+  double *gradient = strut_arena_allocate(&scratch, (size_t)cell->n, sizeof *gradient);
   strut_status status =
       gradient ? strut_potential_create_tied(cell->model, cell->row, cell->n, &potential, error)
                : strut_no_memory(error, "");
-  if (status == STRUT_OK) status = strut_minimiser_create(potential, &minimiser, error);
+  if (status == STRUT_OK) status = strut_minimiser_create(potential, &scratch, &minimiser, error);
   if (status == STRUT_OK) {
     strut_minimiser_watch(minimiser, experiment->interrupt);
     strut_minimiser_stay(minimiser);
@@ -205,9 +206,8 @@ static strut_status settle_cell(const lattice_cell *cell, const strut_experiment
     if (status == STRUT_OK && !(descent.residual <= MOST_LEFT * descent.rounding))
       status = not_found(cell, gradient, error);
   }
-  strut_minimiser_free(minimiser);
   strut_potential_free(potential);
-  strut_release(gradient);
+  strut_arena_free(&scratch);
   return status;
 }
 

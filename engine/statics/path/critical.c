@@ -227,7 +227,8 @@ static const double ROUNDING = 2e-16;   /* of a double */
 static double held_motion(const strut_path_system *system, int32_t k, size_t mode) {
   double sum = 0;
   for (int32_t i = 0; i < system->n; i++)
-    sum += system->held.motion[k][i] * gsl_matrix_get(system->algebra.vectors, (size_t)i, mode);
+    sum += system->held.motion[k * system->n + i] *
+           gsl_matrix_get(system->algebra.vectors, (size_t)i, mode);
   return sum;
 }
 

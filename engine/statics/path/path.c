@@ -204,10 +204,11 @@ static strut_status descend_to_rest(const path_start *self, const uint8_t *held,
                                     strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
+  strut_arena scratch = {0};
   const char *where = without ? "without the load" : "at the start of the path";
   strut_status status = strut_potential_create(self->model, held, true, &potential, error);
   if (status == STRUT_OK && potential->n > 0)
-    status = strut_minimiser_create(potential, &minimiser, error);
+    status = strut_minimiser_create(potential, &scratch, &minimiser, error);
   if (status == STRUT_OK && potential->n > 0) {
     strut_minimiser_watch(minimiser, self->setup.experiment.interrupt);
     strut_descent descent = strut_minimise(minimiser, self->q);
@@ -221,8 +222,8 @@ static strut_status descend_to_rest(const path_start *self, const uint8_t *held,
                           "%s no equilibrium was found to start from: the residual is %.3g N",
                           where, descent.residual);
   }
-  strut_minimiser_free(minimiser);
   strut_potential_free(potential);
+  strut_arena_free(&scratch);
   return status;
 }
 

@@ -196,8 +196,8 @@ typedef struct strut_path_system {
   /** Motions of the whole that were given a stiffness. */
   struct {
     int32_t count;
-    double by, *motion[STRUT_PATH_MOTIONS]; /* (n) each */
-    bool forbidden[STRUT_PATH_MOTIONS];     /* by supports, somewhere on the path */
+    double by, *motion; /* (STRUT_PATH_MOTIONS, n), and scratch of the same size */
+    int32_t most;       /* that supports have left anywhere on the path */
   } held;
   struct {
     gsl_matrix *hessian, *work; /* (n, n) */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
+#include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
@@ -48,10 +49,11 @@ static bool create_contacts(const strut_model *model, strut_arena *arena,
 static bool make_arrays(strut_path_system *system) {
   size_t members = (size_t)system->model->members.count;
   int32_t forces = strut_force_count(system->model, true);
-  double **motion = system->held.motion;
   if (!STRUT_NUMBERS(&system->arena, system->model->length + 1, &system->latest.q,
                      &system->latest.q_low, &system->latest.g, &system->latest.slope,
-                     &system->latest.row, &motion[0], &motion[1], &motion[2]) ||
+                     &system->latest.row) ||
+      !STRUT_NUMBERS(&system->arena, 2 * STRUT_PATH_MOTIONS * (system->model->length + 1),
+                     &system->held.motion) ||
       !STRUT_ALLOCATE(&system->arena, STRUT_NEW(system->latest.pulling, members),
                       STRUT_NEW(system->latest.ahead, 2 * members),
                       STRUT_NEW(system->force, forces)))
@@ -66,7 +68,7 @@ static bool make_arrays(strut_path_system *system) {
 
 strut_status strut_path_system_create(const strut_model *model, const uint8_t *held,
                                       strut_path_system *system, strut_error *error) {
-  *system = (strut_path_system){.model = model};
+  *system = (strut_path_system){.model = model, .held.most = STRUT_PATH_MOTIONS};
   system->size = model->size > 0 ? model->size : 1.0;
   if (!make_arrays(system)) return strut_no_memory(error, "");
   strut_status status = strut_potential_create(model, held, false, &system->potential, error);
@@ -221,64 +223,36 @@ static void add_members(strut_path_system *system) {
   }
 }
 
-/* A unit motion of the whole: along the ground, out of it, or a turn. False: supports forbid it. */
-static bool rigid_motion(const strut_path_system *system, int which, double *motion) {
-  const double axis[2][2] = {{1, 0}, {0, 1}};
-  const strut_contact_table *grounds = &system->equations.terms.laws->contacts;
-  const double *out = grounds->count ? grounds->normal : axis[1];
-  const double *along = grounds->count ? grounds->tangent : axis[0];
-  double centre[2] = {0, 0}, sum = 0;
-  int32_t nodes = system->model->node_count, pins = 0;
-  const int32_t *row_of = system->potential->row_of;
-  for (int32_t i = 0; i < nodes; i++)
-    for (int c = 0; c < 2; c++) centre[c] += system->latest.q[2 * i + c] / nodes;
-  for (int32_t i = 0; i < nodes; i++)
-    if (row_of[2 * i] < 0 && row_of[2 * i + 1] < 0 && pins++ == 0)
-      centre[0] = system->latest.q[2 * i], centre[1] = system->latest.q[2 * i + 1];
-  bool possible = true;
-  for (int32_t at = 0; at < 2 * nodes; at++) {
-    double turn = at % 2 == 0 ? -(system->latest.q[at + 1] - centre[1])
-                              : system->latest.q[at - 1] - centre[0];
-    double there = which == 0 ? along[at % 2] : which == 1 ? out[at % 2] : turn / system->size;
-    int32_t row = row_of[at];
-    if (row < 0 && fabs(there) > RIGID) possible = false;
-    if (row >= 0) motion[row] = there, sum += there * there;
-  }
-  for (int32_t k = 0; k < system->n && sum > 0; k++) motion[k] /= sqrt(sum);
-  return possible;
-}
-
 /*
  * Holds rigid motions that meet no stiffness and no load: they would make every matrix singular. What supports
  * forbid once is never held: two supports that meet allow a turn only there.
  */
 static void hold_rigid_motions(strut_path_system *system) {
   size_t n = (size_t)system->n;
-  double low, high, work = 0, load = 0;
+  double low, high, *motion = system->held.motion, *image = motion + STRUT_PATH_MOTIONS * n;
+  const double *slope = system->latest.slope;
   system->drifts = false;
   system->held.count = 0;
   if (n == 0) return;
   gsl_matrix_minmax(system->algebra.hessian, &low, &high);
-  double stiff = fmax(-low, high);
+  double stiff = fmax(-low, high), load = sqrt(strut_dot(slope, slope, system->n));
   system->held.by = stiff > 0 ? stiff : 1.0;
-  gsl_vector_view product = gsl_vector_subvector(system->algebra.solution, 0, n);
-  for (int k = 0; k < STRUT_PATH_MOTIONS; k++) {
-    double *row = system->held.motion[system->held.count];
-    gsl_vector_view motion = gsl_vector_view_array(row, n);
-    system->held.forbidden[k] = system->held.forbidden[k] || !rigid_motion(system, k, row);
-    if (system->held.forbidden[k]) continue;
-    work = load = 0;
-    for (int32_t i = 0; i < system->n; i++)
-      work += system->latest.slope[i] * row[i],
-          load += system->latest.slope[i] * system->latest.slope[i];
-    gsl_blas_dgemv(CblasNoTrans, 1.0, system->algebra.hessian, &motion.vector, 0.0,
-                   &product.vector);
-    if (gsl_blas_dnrm2(&product.vector) > RIGID * stiff) continue;
-    if (fabs(work) > RIGID * sqrt(load)) {
-      system->drifts = true;
-      continue;
-    }
-    gsl_blas_dger(system->held.by, &motion.vector, &motion.vector, system->algebra.hessian);
+  int32_t count = strut_rigid_motions(system->potential, system->latest.q, NULL, motion);
+  count = system->held.most = count < system->held.most ? count : system->held.most;
+  for (size_t k = 0; k < (size_t)count; k++) {
+    gsl_vector_view row = gsl_vector_view_array(motion + k * n, n);
+    gsl_vector_view product = gsl_vector_view_array(image + k * n, n);
+    gsl_blas_dgemv(CblasNoTrans, 1.0, system->algebra.hessian, &row.vector, 0.0, &product.vector);
+  }
+  count = strut_rigid_motions_free(system->n, RIGID * stiff, count, motion, image);
+  for (size_t k = 0; k < (size_t)count; k++) {
+    double *row = motion + (size_t)system->held.count * n;
+    memmove(row, motion + k * n, n * sizeof *row);
+    bool works = fabs(strut_dot(slope, row, system->n)) > RIGID * load;
+    gsl_vector_view held = gsl_vector_view_array(row, n);
+    system->drifts = system->drifts || works;
+    if (works) continue;
+    gsl_blas_dger(system->held.by, &held.vector, &held.vector, system->algebra.hessian);
     system->held.count++;
   }
 }

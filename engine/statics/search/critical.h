@@ -160,11 +160,11 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
  */
 
 typedef struct strut_climber strut_climber;
-/** For one thread at a time; the minimiser of the same potential polishes the ends. NULL: out of memory. */
-strut_climber *strut_climber_create(const strut_potential *potential, strut_minimiser *minimiser);
+/** For one thread at a time, in the arena; the minimiser of the same potential polishes the ends. NULL: out of memory. */
+strut_climber *strut_climber_create(const strut_potential *potential, strut_minimiser *minimiser,
+                                    strut_arena *arena);
 /** Hessians decomposed so far: a measure of the work done. */
 int64_t strut_climber_hessian_count(const strut_climber *climber);
-void strut_climber_free(strut_climber *climber);
 
 /**
  * Moves q (length) up along `index` >= 1 modes and down all others. direction (n), or NULL: which

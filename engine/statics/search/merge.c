@@ -188,8 +188,9 @@ const char *strut_stability_name(strut_stability stability) {
 static strut_status judge_dense(const judgement *self, const double *positions, strut_arena *arena,
                                 strut_critical_point *point, strut_error *error) {
   int32_t n = self->potential->n;
+  strut_arena scratch = {0};
   strut_spectrum spectrum;
-  strut_spectrum_workspace *room = strut_spectrum_create(self->potential);
+  strut_spectrum_workspace *room = strut_spectrum_create(self->potential, &scratch);
   bool good = room && strut_spectrum_compute(room, positions, self->least, true, &spectrum);
   point->eigenvalues = strut_arena_allocate(arena, (size_t)n, sizeof *point->eigenvalues);
   if (good && point->eigenvalues) {
@@ -201,7 +202,7 @@ static strut_status judge_dense(const judgement *self, const double *positions, 
     point->eigenvalue_count = n;
     set_softest(self, spectrum.vector, n, self->work, point);
   }
-  strut_spectrum_free(room);
+  strut_arena_free(&scratch);
   return good && point->eigenvalues ? STRUT_OK : strut_no_memory(error, "");
 }
 

@@ -24,32 +24,22 @@ struct strut_climber {
   double *straight, *g_trial;   /* (n) the step before it was bent, and the gradient at its end */
   uint8_t *idle;                /* (n) */
   double *trial, *begin;        /* (length) */
-  strut_arena arena;
 };
 
-strut_climber *strut_climber_create(const strut_potential *potential, strut_minimiser *minimiser) {
-  strut_climber *climber = strut_allocate(1, sizeof *climber);
+strut_climber *strut_climber_create(const strut_potential *potential, strut_minimiser *minimiser,
+                                    strut_arena *arena) {
+  strut_climber *climber = strut_arena_allocate(arena, 1, sizeof *climber);
   size_t n = (size_t)potential->n;
-  if (!climber) return NULL;
+  if (!climber || !STRUT_ALLOCATE(arena, STRUT_NEW(climber->idle, n)) ||
+      !STRUT_NUMBERS(arena, n, &climber->g, &climber->part, &climber->value, &climber->x,
+                     &climber->step, &climber->follow, &climber->straight, &climber->g_trial) ||
+      !STRUT_NUMBERS(arena, potential->model->length, &climber->trial, &climber->begin))
+    return NULL;
   climber->potential = potential;
   climber->minimiser = minimiser;
   climber->size = potential->model->size > 0 ? potential->model->size : 1.0;
-  climber->spectra = strut_spectrum_create(potential);
-  climber->idle = strut_arena_allocate(&climber->arena, n, sizeof *climber->idle);
-  if (climber->spectra && climber->idle &&
-      STRUT_NUMBERS(&climber->arena, n, &climber->g, &climber->part, &climber->value, &climber->x,
-                    &climber->step, &climber->follow, &climber->straight, &climber->g_trial) &&
-      STRUT_NUMBERS(&climber->arena, potential->model->length, &climber->trial, &climber->begin))
-    return climber;
-  strut_climber_free(climber);
-  return NULL;
-}
-
-void strut_climber_free(strut_climber *climber) {
-  if (!climber) return;
-  strut_spectrum_free(climber->spectra);
-  strut_arena_free(&climber->arena);
-  strut_release(climber);
+  climber->spectra = strut_spectrum_create(potential, arena);
+  return climber->spectra ? climber : NULL;
 }
 
 int64_t strut_climber_hessian_count(const strut_climber *climber) { return climber->hessian_count; }

@@ -212,8 +212,10 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
     worker *self = &tasks->workers[i];
     self->direction =
         strut_arena_allocate(&tasks->arena, (size_t)potential->n, sizeof *self->direction);
-    good = self->direction && strut_minimiser_create(potential, &self->minimiser, NULL) == STRUT_OK;
-    if (good && climbs) good = (self->climber = strut_climber_create(potential, self->minimiser));
+    good = self->direction &&
+           strut_minimiser_create(potential, &tasks->arena, &self->minimiser, NULL) == STRUT_OK;
+    if (good && climbs)
+      good = (self->climber = strut_climber_create(potential, self->minimiser, &tasks->arena));
   }
   if (good) return STRUT_OK;
   strut_search_tasks_free(tasks);
@@ -223,10 +225,6 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
 
 void strut_search_tasks_free(strut_search_tasks *batch) {
   if (!batch) return;
-  for (int i = 0; batch->workers && i < batch->worker_count; i++) {
-    strut_minimiser_free(batch->workers[i].minimiser);
-    strut_climber_free(batch->workers[i].climber);
-  }
   strut_arena_free(&batch->arena);
   strut_release(batch);
 }
