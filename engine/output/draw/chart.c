@@ -57,8 +57,7 @@ static strut_fill category_fill(size_t i) {
   unsigned rgb = order[i % count];
   return (strut_fill){
       .colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, 1},
-      .hatch = (strut_hatch)(i / count % (STRUT_HATCH_LEVEL + 1)),
-      .hatch_colour = strut_grey(0.3)};
+      .hatch = strut_faded(strut_grey(0.35 * fmax(0, (double)(i / count) - 1)), i >= count)};
 }
 
 /* The lower edge of cell i of (count) ascending positions: midway to the previous one. */
@@ -89,7 +88,7 @@ static void add_area(strut_figure *legend, strut_fill fill, const char *text) {
 }
 
 static void name_cells(const strut_map *map, strut_figure *legend) {
-  strut_fill fill = {.colour = strut_grey(1), .hatch_colour = strut_grey(0.05)};
+  strut_fill fill = {.colour = strut_grey(1)};
   bool doubt = false, missing = false;
   for (size_t k = 0; k < map->columns * map->rows; k++) {
     doubt = doubt || (map->doubtful && map->doubtful[k]);
@@ -98,7 +97,7 @@ static void name_cells(const strut_map *map, strut_figure *legend) {
   for (size_t i = 0; map->names && i < map->name_count; i++)
     add_area(legend, category_fill(i), map->names[i]);
   if (missing) add_area(legend, fill, "no result");
-  fill.hatch = STRUT_HATCH_RISING;
+  fill.hatch = strut_grey(0.05);
   if (doubt) add_area(legend, fill, map->doubt ? map->doubt : "doubtful");
 }
 
@@ -361,7 +360,7 @@ static strut_box cell_box(const chart *self, size_t k, size_t count) {
 /* Hatching on a doubtful cell, a dot on one without a result. */
 static void mark_cell(const chart *self, size_t k) {
   const strut_map *map = self->panel->map;
-  const strut_fill doubt = {.hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
+  const strut_fill doubt = {.hatch = strut_grey(0.05)};
   const strut_fill dot = {.colour = strut_grey(0.5)};
   strut_box box = cell_box(self, k, 1);
   if (map->doubtful && map->doubtful[k]) strut_draw_box(self->canvas, box, &doubt, NULL);
