@@ -325,12 +325,9 @@ static bool settle_scale(const strut_panel *panels, size_t count, strut_colour_s
   double range[2];
   if (scale->high > scale->low) return true;
   if (!find_range(panels, count, true, range, &scale->beyond, arena)) return false;
-  scale->low = range[0], scale->high = range[1];
-  if (!(scale->high > scale->low) || strut_is_noise(&scale->low, &scale->high, scale->unit)) {
-    double middle = isfinite(scale->low) ? scale->low : 0; /* one value, or none */
-    scale->low = middle - (middle != 0 ? 0.5 * fabs(middle) : 0.5);
-    scale->high = 2 * middle - scale->low;
-  }
+  strut_axis axis = {.unit = scale->unit, .low = range[0], .high = range[1]};
+  strut_axis_settle(&axis, 0);
+  scale->low = axis.low, scale->high = axis.high;
   bool signs = scale->low < -ONE_SIGN * scale->high && scale->high > -ONE_SIGN * scale->low;
   if (scale->colours == STRUT_COLOURS_AUTO)
     scale->colours = signs ? STRUT_COLOURS_DIVERGING : STRUT_COLOURS_SEQUENTIAL;

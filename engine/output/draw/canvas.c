@@ -460,25 +460,20 @@ static void set_pen(cairo_t *cairo, const strut_pen *pen) {
   cairo_set_line_cap(cairo, pen->butt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
 }
 
-/* Lines at every HATCH_DISTANCE within the path, anchored to the page so that areas side by side join. */
+/* Rising lines at every HATCH_DISTANCE within the path, anchored to the page so that areas side by side join. */
 static void hatch(cairo_t *cairo, const strut_fill *fill) {
-  static const double slants[] = {/* the line's rise for each point it runs to the right */
-                                  [STRUT_HATCH_RISING] = 1,
-                                  [STRUT_HATCH_FALLING] = -1,
-                                  [STRUT_HATCH_LEVEL] = 0};
-  const strut_pen pen = {.colour = fill->hatch_colour, .width = HATCH_WIDTH, .butt = true};
-  double x1, y1, x2, y2, slant = slants[fill->hatch];
-  double step = slant == 0 ? HATCH_DISTANCE : HATCH_DISTANCE * sqrt(2.0);
+  const strut_pen pen = {.colour = fill->hatch, .width = HATCH_WIDTH, .butt = true};
+  const double step = HATCH_DISTANCE * sqrt(2.0);
+  double x1, y1, x2, y2;
   cairo_save(cairo);
   cairo_clip_preserve(cairo);
   cairo_path_t *outline = cairo_copy_path(cairo);
   cairo_new_path(cairo);
   set_pen(cairo, &pen);
   cairo_clip_extents(cairo, &x1, &y1, &x2, &y2);
-  double low = y1 + fmin(slant * x1, slant * x2), high = y2 + fmax(slant * x1, slant * x2);
-  for (double k = floor(low / step); k * step <= high; k++) {
-    cairo_move_to(cairo, x1, k * step - slant * x1);
-    cairo_line_to(cairo, x2, k * step - slant * x2);
+  for (double k = floor((y1 + x1) / step); k * step <= y2 + x2; k++) {
+    cairo_move_to(cairo, x1, k * step - x1);
+    cairo_line_to(cairo, x2, k * step - x2);
   }
   cairo_stroke(cairo);
   cairo_restore(cairo);
@@ -525,7 +520,7 @@ static void draw(strut_canvas *canvas, outline line, const strut_fill *fill, con
       set_ink(cairo, fill->colour);
       cairo_fill_preserve(cairo);
     }
-    if (fill && fill->hatch != STRUT_HATCH_NONE) hatch(cairo, fill);
+    if (fill && fill->hatch.alpha > 0) hatch(cairo, fill);
     if (pen && pen->colour.alpha > 0) {
       set_pen(cairo, pen);
       cairo_stroke_preserve(cairo);

@@ -34,18 +34,9 @@ typedef struct strut_pen {
   bool butt;      /* ends where its last point is; else ends are round */
 } strut_pen;
 
-typedef enum strut_hatch {
-  STRUT_HATCH_NONE,
-  STRUT_HATCH_RISING, /* from lower left to upper right */
-  STRUT_HATCH_FALLING,
-  STRUT_HATCH_LEVEL
-} strut_hatch;
-
-/** Fill of an area: a colour, with hatching in another colour over it. */
+/** Fill of an area: a colour, with hatching in another colour over it; alpha 0: none. */
 typedef struct strut_fill {
-  strut_colour colour;
-  strut_hatch hatch;
-  strut_colour hatch_colour;
+  strut_colour colour, hatch;
 } strut_fill;
 
 /** Style of a text. Font size in pt; 0: 8. */

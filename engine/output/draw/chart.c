@@ -57,8 +57,7 @@ static strut_fill category_fill(size_t i) {
   unsigned rgb = order[i % count];
   return (strut_fill){
       .colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, 1},
-      .hatch = (strut_hatch)(i / count % (STRUT_HATCH_LEVEL + 1)),
-      .hatch_colour = strut_grey(0.3)};
+      .hatch = strut_faded(strut_grey(0.35 * fmax(0, (double)(i / count) - 1)), i >= count)};
 }
 
 /* The lower edge of cell i of (count) ascending positions: midway to the previous one. */
@@ -77,55 +76,47 @@ static bool has_result(const strut_map *map, size_t k) { return isfinite(map->va
 
 /* ---- the legend ---- */
 
-size_t strut_panel_legend_room(const strut_panel *panel) {
-  return panel->series_count + panel->band_count + (panel->map ? panel->map->name_count : 0) + 2;
+static void add_item(strut_figure *legend, strut_key_item item) {
+  size_t before = legend->key_count;
+  if (!item.text || !*item.text) return;
+  strut_key_item *added = strut_add_key(legend, item.sign, item.pen, item.text);
+  if (legend->key_count > before) *added = item;
 }
 
-static size_t add_item(strut_key_item *items, size_t count, strut_key_item item) {
-  if (!item.text || !*item.text) return count;
-  for (size_t k = 0; k < count; k++)
-    if (strcmp(items[k].text, item.text) == 0) return count;
-  items[count] = item;
-  return count + 1;
+static void add_area(strut_figure *legend, strut_fill fill, const char *text) {
+  add_item(legend, (strut_key_item){.sign = STRUT_KEY_AREA, .fill = fill, .text = text});
 }
 
-static size_t add_area(strut_key_item *items, size_t count, strut_fill fill, const char *text) {
-  return add_item(items, count,
-                  (strut_key_item){.sign = STRUT_KEY_AREA, .fill = fill, .text = text});
-}
-
-static size_t name_cells(const strut_map *map, strut_key_item *items, size_t count) {
-  strut_fill fill = {.colour = strut_grey(1), .hatch_colour = strut_grey(0.05)};
+static void name_cells(const strut_map *map, strut_figure *legend) {
+  strut_fill fill = {.colour = strut_grey(1)};
   bool doubt = false, missing = false;
   for (size_t k = 0; k < map->columns * map->rows; k++) {
     doubt = doubt || (map->doubtful && map->doubtful[k]);
     missing = missing || !has_result(map, k);
   }
   for (size_t i = 0; map->names && i < map->name_count; i++)
-    count = add_area(items, count, category_fill(i), map->names[i]);
-  if (missing) count = add_area(items, count, fill, "no result");
-  fill.hatch = STRUT_HATCH_RISING;
-  return doubt ? add_area(items, count, fill, map->doubt ? map->doubt : "doubtful") : count;
+    add_area(legend, category_fill(i), map->names[i]);
+  if (missing) add_area(legend, fill, "no result");
+  fill.hatch = strut_grey(0.05);
+  if (doubt) add_area(legend, fill, map->doubt ? map->doubt : "doubtful");
 }
 
 static const strut_fill band_fill = {.colour = {0.86, 0.86, 0.86, 1}};
 
-size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
+void strut_panel_legend(const strut_panel *panel, strut_figure *legend) {
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
     strut_key_sign sign = panel->series[i].bar > 0 ? STRUT_KEY_AREA : STRUT_KEY_LINE;
     if (panel->series[i].cloud) sign = STRUT_KEY_DOT;
-    count = add_item(items, count,
-                     (strut_key_item){.sign = sign,
+    add_item(legend, (strut_key_item){.sign = sign,
                                       .pen = panel->series[i].cloud ? (strut_pen){.width = 0} : pen,
                                       .fill = {.colour = pen.colour},
                                       .marked = has_markers(panel, &panel->series[i]),
                                       .look = look_of(panel, i),
                                       .text = panel->series[i].label});
   }
-  for (size_t i = 0; i < panel->band_count; i++)
-    count = add_area(items, count, band_fill, panel->bands[i].label);
-  return panel->map ? name_cells(panel->map, items, count) : count;
+  for (size_t i = 0; i < panel->band_count; i++) add_area(legend, band_fill, panel->bands[i].label);
+  if (panel->map) name_cells(panel->map, legend);
 }
 
 /* ---- points on the page ---- */
@@ -369,7 +360,7 @@ static strut_box cell_box(const chart *self, size_t k, size_t count) {
 /* Hatching on a doubtful cell, a dot on one without a result. */
 static void mark_cell(const chart *self, size_t k) {
   const strut_map *map = self->panel->map;
-  const strut_fill doubt = {.hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
+  const strut_fill doubt = {.hatch = strut_grey(0.05)};
   const strut_fill dot = {.colour = strut_grey(0.5)};
   strut_box box = cell_box(self, k, 1);
   if (map->doubtful && map->doubtful[k]) strut_draw_box(self->canvas, box, &doubt, NULL);
@@ -465,21 +456,20 @@ static void draw_data(const chart *self) {
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena) {
   chart c = {.canvas = canvas, .panel = panel, .arena = arena};
-  strut_key_item *items =
-      strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
-  if (!items) return false;
-  size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
+  strut_figure key = {0};
+  if (legend) strut_panel_legend(panel, &key);
   c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
-  const strut_box key = {c.axes.frame.x + PADDING, box.y + PADDING,
-                         fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
-  double above = strut_draw_key(canvas, key, items, count, true).height;
-  if (count) above += 2 * PADDING;
+  const strut_box place = {c.axes.frame.x + PADDING, box.y + PADDING,
+                           fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
+  double above = strut_draw_key(canvas, place, key.keys, key.key_count, true).height;
+  if (above > 0) above += 2 * PADDING;
+  strut_arena_free(&key.arena);
   const strut_box scale = {c.axes.frame.x, box.y + above, fmin(c.axes.frame.width, WIDEST),
                            STRUT_SCALE_HEIGHT};
   if (panel->scale.name) above += scale.height;
   box.y += above, box.height -= above;
   c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
-  if (!place_lines(&c)) return false;
+  if (key.failed || !place_lines(&c)) return false;
   draw_data(&c);
   if (panel->scale.name) strut_draw_colour_scale(canvas, scale, &panel->scale);
   return true;

@@ -41,11 +41,6 @@ typedef struct strut_axis_choice {
   bool logarithmic;
 } strut_axis_choice;
 
-/**
- * Whether values from low to high [unit] differ by rounding noise only and are drawn as a constant;
- * a length or velocity far below an atom's size becomes zero.
- */
-STRUT_API bool strut_is_noise(double *low, double *high, const char *unit);
 /** Widens an axis whose range is from the data by a value; values that are not finite are ignored. */
 STRUT_API void strut_axis_include(strut_axis *axis, double value);
 /**

@@ -17,26 +17,22 @@ enum { COLUMNS = 3 };
 
 /* A page that is measured, then drawn. */
 typedef struct page {
-  strut_figure *figure;  /* settled */
-  const char *title;     /* NULL: none */
-  strut_key_item *items; /* of the legend of all panels */
-  size_t item_count;
-  double scale; /* of the latest view [pt/m] */
+  strut_figure *figure; /* settled */
+  const char *title;    /* NULL: none */
+  strut_figure legend;  /* its keys are those of all panels */
+  double scale;         /* of the latest view [pt/m] */
 } page;
 
 /* Settles what the figure leaves open, panels together or each by itself. False: out of memory. */
 static bool begin_page(page *self, strut_figure *figure, const strut_plot *plot) {
-  size_t together = figure->shared_axes ? figure->panel_count : 1, room = 1;
+  size_t together = figure->shared_axes ? figure->panel_count : 1;
   bool fine = !figure->failed;
   *self = (page){.figure = figure, .title = plot->title ? plot->title : figure->title};
-  for (size_t i = 0; i < figure->panel_count; i++)
-    room += strut_panel_legend_room(&figure->panels[i]);
   for (size_t i = 0; i < figure->panel_count && fine; i += together)
     fine = strut_panels_settle(&figure->panels[i], together, &figure->arena);
-  self->items = strut_arena_allocate(&figure->arena, room, sizeof *self->items);
-  for (size_t i = 0; self->items && figure->one_legend && i < figure->panel_count; i++)
-    self->item_count = strut_panel_legend(&figure->panels[i], self->items, self->item_count);
-  return fine && self->items;
+  for (size_t i = 0; figure->one_legend && i < figure->panel_count; i++)
+    strut_panel_legend(&figure->panels[i], &self->legend);
+  return fine && !self->legend.failed;
 }
 
 /* ---- panels in rows ---- */
@@ -198,7 +194,7 @@ static double put_page(page *self, strut_canvas *canvas, double width, bool *fin
   box.y += put_heading(canvas, box, figure->note, plain, draw);
   if (box.y > EDGE) box.y += HEADING_GAP - LINE_GAP;
   const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
-  box.y += strut_draw_key(canvas, legend, self->items, self->item_count, draw).height;
+  box.y += strut_draw_key(canvas, legend, self->legend.keys, self->legend.key_count, draw).height;
   for (size_t i = 0; i < figure->panel_count;) {
     const group g = find_group(figure, i, box.width);
     if (i) box.y += GAP;
@@ -228,17 +224,19 @@ static strut_status draw(const strut_plot *plot, strut_figure *figure, strut_err
   strut_canvas *canvas = NULL;
   double width = plot->width > 0 ? plot->width : PAGE;
   bool fine = begin_page(&p, figure, plot);
-  if (!fine) return strut_no_memory(error, "while drawing");
-  strut_status status = open_pixels(1, 1, 1.0, &canvas, error);
-  if (status) return status;
-  double height = put_page(&p, canvas, width, NULL);
+  strut_status status =
+      fine ? open_pixels(1, 1, 1.0, &canvas, error) : strut_no_memory(error, "while drawing");
+  double height = status ? 0 : put_page(&p, canvas, width, NULL);
   strut_canvas_free(canvas);
-  status = strut_canvas_open(plot->path, width, height, p.title ? p.title : "", &canvas, error);
-  if (status) return status;
-  if (plot->texts) strut_canvas_keep_texts(canvas);
-  put_page(&p, canvas, width, &fine);
-  status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");
+  canvas = NULL;
+  if (!status)
+    status = strut_canvas_open(plot->path, width, height, p.title ? p.title : "", &canvas, error);
+  if (!status && plot->texts) strut_canvas_keep_texts(canvas);
+  if (!status) put_page(&p, canvas, width, &fine);
+  if (!status)
+    status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");
   strut_canvas_free(canvas);
+  strut_arena_free(&p.legend.arena);
   return status;
 }
 
@@ -247,6 +245,7 @@ static const unsigned char *paint(strut_canvas *canvas, strut_figure *figure, si
   bool fine = begin_page(&p, figure, &(strut_plot){.path = NULL});
   strut_canvas_clear(canvas, strut_grey(1));
   if (fine) put_page(&p, canvas, strut_canvas_box(canvas).width, &fine);
+  strut_arena_free(&p.legend.arena);
   return fine ? strut_canvas_pixels(canvas, stride) : NULL;
 }
 

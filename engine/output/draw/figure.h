@@ -20,7 +20,7 @@
 typedef enum strut_key_sign {
   STRUT_KEY_LINE,  /* a short line by `pen`, with the marker of a look if `marked` */
   STRUT_KEY_ARROW, /* an arrow by `pen` */
-  STRUT_KEY_DOT,   /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
+  STRUT_KEY_DOT,   /* a circle by `fill` and `pen` */
   STRUT_KEY_AREA,  /* a box by `fill` */
   STRUT_KEY_WORDS  /* no sign */
 } strut_key_sign;
@@ -31,8 +31,7 @@ typedef struct strut_key_item {
   strut_fill fill;
   bool marked;
   size_t look;
-  const char *letter; /* for STRUT_KEY_DOT; or NULL */
-  const char *text;   /* NULL: the item is left out */
+  const char *text; /* NULL: the item is left out */
 } strut_key_item;
 
 /* ---- charts ---- */
@@ -108,7 +107,6 @@ typedef struct strut_trail {
   size_t count;
   double (*at)[2]; /* (count) [m] */
   strut_pen pen;
-  bool below; /* below the shapes */
 } strut_trail;
 
 /* ---- both ---- */

@@ -115,51 +115,46 @@ static double confusion(const search *self, const strut_box *box) {
   return cost;
 }
 
-/* Tries the place in one direction at one ring. */
+/* Keeps a box that is free and costs less than the best so far. */
+static void consider(search *self, strut_box box, double cost) {
+  if (cost >= self->cost || !is_free(self, &box)) return;
+  cost += INK * strut_canvas_ink(self->canvas, box) +
+          NEAR_INK * strut_canvas_ink(self->canvas, widened(box, AROUND)) + confusion(self, &box);
+  if (cost < self->cost - 1e-9) self->cost = cost, self->best = box;
+}
+
+/* Considers the place in one direction at one ring. */
 static void try_place(search *self, double ring, int direction) {
   const strut_label *label = self->label;
   double angle = label->angle + 2 * STRUT_PI * direction / DIRECTIONS, gap = label->gap + ring;
   double x = label->at[0] + (gap + 0.5 * self->width) * cos(angle);
   double y = label->at[1] - (gap + 0.5 * self->height) * sin(angle);
-  const strut_box box = settle_box(
-      (strut_box){x - 0.5 * self->width, y - 0.5 * self->height, self->width, self->height});
   int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
-  double cost = DISTANCE * ring + TURN * label->steady * turn + (ring >= LED ? LINE : 0.0);
-  if (cost >= self->cost || !is_free(self, &box)) return;
-  cost += INK * strut_canvas_ink(self->canvas, box) +
-          NEAR_INK * strut_canvas_ink(self->canvas, widened(box, AROUND)) + confusion(self, &box);
-  if (cost >= self->cost - 1e-9) return;
-  self->cost = cost;
-  self->best = box;
+  consider(self,
+           settle_box((strut_box){x - 0.5 * self->width, y - 0.5 * self->height, self->width,
+                                  self->height}),
+           DISTANCE * ring + TURN * label->steady * turn + (ring >= LED ? LINE : 0.0));
 }
 
 /* For what names nothing at its place: wherever least is covered, the nearer the better. */
-static bool find_empty_place(search *self) {
+static void try_everywhere(search *self) {
   static const double STEP = 4.0, FAR = 0.01; /* [pt], cost of each pt */
   const strut_box *in = &self->inside;
-  self->cost = HUGE_VAL;
+  double point[2];
   for (double y = in->y; y + self->height <= in->y + in->height; y += STEP)
     for (double x = in->x; x + self->width <= in->x + in->width; x += STEP) {
       const strut_box box = {x, y, self->width, self->height};
-      double point[2], cost = FAR * nearest_point(&box, self->label->at, point);
-      if (cost >= self->cost || !is_free(self, &box)) continue;
-      cost += INK * strut_canvas_ink(self->canvas, box);
-      if (cost >= self->cost - 1e-9) continue;
-      self->cost = cost;
-      self->best = box;
+      consider(self, box, FAR * nearest_point(&box, self->label->at, point));
     }
-  return self->cost < HUGE_VAL;
 }
 
 static bool find_place(search *self) {
-  if (self->label->loose) return find_empty_place(self);
-  self->cost = HUGE_VAL;
-  for (size_t r = 0; r < sizeof RINGS / sizeof *RINGS; r++) {
-    if (DISTANCE * RINGS[r] >= self->cost) break;
+  self->cost = self->label->loose ? HUGE_VAL : WORST;
+  if (self->label->loose) try_everywhere(self);
+  for (size_t r = 0; r < sizeof RINGS / sizeof *RINGS && !self->label->loose; r++)
     for (int k = 0; k < DIRECTIONS; k++) /* by turns to both sides of the preferred direction */
       try_place(self, RINGS[r], k % 2 ? (k + 1) / 2 : (DIRECTIONS - k / 2) % DIRECTIONS);
-  }
-  return self->cost < WORST;
+  return self->best.width > 0;
 }
 
 /* The thin line from what is named to a label that is far from it. */

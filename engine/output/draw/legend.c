@@ -92,28 +92,18 @@ static const double LINE = 11.0, SIGN = 20.0, SIGN_GAP = 4.0, BETWEEN = 13.0; /*
 static const double DOT = 2.6, MARKER = 2.0, AREA = 7.0;
 static const strut_font letters = {.size = 7.5, .down = 0.5};
 
-static double text_width(strut_canvas *canvas, const char *text) {
-  return strut_text_box(canvas, text, letters).width;
-}
-
 /* How far right of the sign the text begins. */
-static double width_of_sign(strut_canvas *canvas, const strut_key_item *item) {
-  double letter = item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0;
+static double width_of_sign(const strut_key_item *item) {
   return item->sign == STRUT_KEY_WORDS ? 0
-         : item->sign == STRUT_KEY_DOT ? 2 * DOT + SIGN_GAP + letter
+         : item->sign == STRUT_KEY_DOT ? 2 * DOT + SIGN_GAP
                                        : SIGN + SIGN_GAP;
 }
 
 static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y) {
   const strut_pen rim = {.colour = strut_grey(0.4), .width = 0.4};
-  strut_font bold = letters;
-  bold.bold = true;
   switch (item->sign) {
     case STRUT_KEY_WORDS: break;
-    case STRUT_KEY_DOT:
-      strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
-      strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, bold);
-      break;
+    case STRUT_KEY_DOT: strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen); break;
     case STRUT_KEY_LINE:
       strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
       if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
@@ -130,10 +120,10 @@ strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_it
   strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
-    double sign = width_of_sign(canvas, &items[i]);
+    double sign = width_of_sign(&items[i]);
     strut_font font = letters;
     font.down = 0.0;
-    if (box.width > 0 && sign + text_width(canvas, items[i].text) > box.width)
+    if (box.width > 0 && sign + strut_text_box(canvas, items[i].text, letters).width > box.width)
       font.width = box.width - sign;
     const strut_box text = strut_text_box(canvas, items[i].text, font);
     if (x > 0 && x + sign + text.width > box.width) x = 0.0, y += row, row = LINE;

@@ -84,12 +84,8 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
 
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
-/**
- * Appends what a panel's legend says, unless it is there already. Returns how many items there are then; `items` has
- * room for strut_panel_legend_room more.
- */
-size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count);
-size_t strut_panel_legend_room(const strut_panel *panel);
+/** Adds what a panel's legend says to the keys of `legend`, unless it is there already. */
+void strut_panel_legend(const strut_panel *panel, strut_figure *legend);
 /** Draws a chart with settled axes in a box, with its legend or without. False: out of memory. */
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena);

@@ -103,7 +103,8 @@ double strut_round_below(double value) {
    size. */
 static const double ROUNDING = 1e-12, LEAST_LENGTH = 1e-13;
 
-bool strut_is_noise(double *low, double *high, const char *unit) {
+/* True if values differ by rounding only; a length or velocity far below an atom's size becomes zero. */
+static bool is_noise(double *low, double *high, const char *unit) {
   double size = fmax(fabs(*low), fabs(*high));
   bool length = unit && (strcmp(unit, "m") == 0 || strcmp(unit, "m/s") == 0);
   if (length && size < LEAST_LENGTH) *low = *high = 0;
@@ -130,7 +131,7 @@ void strut_axis_settle(strut_axis *axis, double room) {
     axis->high = fmax(fmin(axis->high * wider, 1e300), 2 * axis->low);
     return;
   }
-  bool constant = strut_is_noise(&axis->low, &axis->high, axis->unit);
+  bool constant = is_noise(&axis->low, &axis->high, axis->unit);
   double span = axis->high - axis->low;
   double size = fmax(fabs(axis->low), fabs(axis->high));
   if (constant || !isfinite(span)) { /* a constant is drawn in the middle */

@@ -222,7 +222,7 @@ static void draw_support(strut_canvas *canvas, const double tip[2], const double
                              {height + wheel, -0.55 * half}};
   const strut_pen pen = {.colour = strut_grey(0.25), .width = 0.7 * size};
   const strut_fill white = {.colour = strut_grey(1)};
-  const strut_fill hatched = {.hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.45)};
+  const strut_fill hatched = {.hatch = strut_grey(0.45)};
   double at[9][2];
   for (int k = 0; k < 9; k++) {
     at[k][0] = tip[0] + place[k][0] * out[0] - place[k][1] * out[1];
@@ -476,8 +476,7 @@ static const double DEPTH = 8.0; /* of the hatching below a surface [pt] */
 
 /* Hatching to the right of each segment of (count) points on the page. */
 static void hatch_below(strut_canvas *canvas, const double (*points)[2], size_t count) {
-  const strut_fill fill = {
-      .colour = strut_grey(0.95), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.72)};
+  const strut_fill fill = {.colour = strut_grey(0.95), .hatch = strut_grey(0.72)};
   for (size_t k = 0; k + 1 < count; k++) {
     const double *a = points[k], *b = points[k + 1];
     double x = b[0] - a[0], y = b[1] - a[1], length = sqrt(x * x + y * y);

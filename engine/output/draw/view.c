@@ -54,10 +54,8 @@ static void draw_line(strut_canvas *canvas, const strut_trail *trail) {
 }
 
 /* Draws trails, whose points go to the page. */
-static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
-                        bool below) {
+static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_panel *view) {
   for (strut_trail *trail = view->trails; trail < view->trails + view->trail_count; trail++) {
-    if (trail->below != below) continue;
     for (size_t k = 0; k < trail->count; k++)
       strut_window_point(window, trail->at[k], trail->at[k]);
     (trail->kind == STRUT_TRAIL_ARROW ? draw_arrow : draw_line)(canvas, trail);
@@ -93,9 +91,8 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
   strut_canvas_clip(canvas, box);
   for (const strut_shape *s = view->shapes; s < end; s++)
     if (s->ground) strut_draw_ground(canvas, &window, s);
-  draw_trails(canvas, &window, view, true);
   for (const strut_shape *s = view->shapes; s < end; s++) strut_draw_shape(canvas, &window, s);
-  draw_trails(canvas, &window, view, false);
+  draw_trails(canvas, &window, view);
   for (size_t i = 0; i < view->mark_count; i++) {
     strut_label mark = view->marks[i];
     strut_window_point(&window, view->marks[i].at, mark.at);

@@ -305,7 +305,8 @@ static const char *describe_stop(path_picture *picture, const path_stop *stop) {
   double reference = picture->path->reference;
   double value = stop->at->factor * (reference > 0 ? reference : 1.0);
   const char *unit = reference > 0 ? "N" : *picture->path->unit ? picture->path->unit : "1";
-  return strut_figure_text(&picture->figure, "%s, %s", stop->text,
+  return strut_figure_text(&picture->figure, "%s%s%s, %s", stop->letter, *stop->letter ? ": " : "",
+                           stop->text,
                            strut_quantity_shown(value, 5, unit, shown_unit(picture)).text);
 }
 
@@ -317,7 +318,6 @@ static void add_keys(path_picture *picture) {
     const path_stop *stop = &picture->stops[i];
     strut_key_item *item = strut_add_key(figure, STRUT_KEY_DOT, pen, describe_stop(picture, stop));
     item->fill.colour = colour_of(picture, i);
-    item->letter = *stop->letter ? stop->letter : NULL;
   }
   if (more)
     strut_add_key(figure, STRUT_KEY_WORDS, pen,

@@ -256,8 +256,7 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
   /* Where the measured point began. */
   strut_add_segment(
       run->page, panel, STRUT_TRAIL_LINE, (strut_pen){strut_grey(0.6), 0.6, {2, 2}, false},
-      (const double[2]){start, self->all.low[1]}, (const double[2]){start, self->all.high[1]})
-      ->below = true;
+      (const double[2]){start, self->all.low[1]}, (const double[2]){start, self->all.high[1]});
 }
 
 const char *strut_run_snapshots(strut_run_scene *run, strut_figure *figure) {

@@ -15,7 +15,7 @@
 static const double MARGIN = 16, NARROWEST = 150, ASPECT = 0.6; /* [pt], [1] */
 static const double FOOT = 0.08; /* space for a scale bar, relative to the extent */
 static const double UNLIKE = 4.0;
-enum { NAMED = 40, DRIVEN = STRUT_CABLE + 1 /* beside the kinds of members */ };
+enum { DRIVEN = STRUT_CABLE + 1 /* beside the kinds of members */ };
 
 typedef struct sheet {
   const strut_compare_column *columns; /* (count) */
@@ -77,8 +77,7 @@ static void add_panel(sheet *self, const strut_compare_column *column) {
   panel->margin = MARGIN;
   panel->yardstick = !self->alike;
   strut_shape *shape = strut_add_shape(&self->figure, panel, column->model, column->q);
-  shape->ground = true;
-  shape->names = column->model->node_count <= NAMED;
+  shape->ground = shape->names = true;
 }
 
 static void add_keys(sheet *self) {
