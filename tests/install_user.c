@@ -60,7 +60,7 @@ int main(void) {
   strut_summary summary = {0};
   strut_diagnostics diagnostics = {0};
   strut_error error = {0};
-  strut_sink *sinks[] = {strut_csv_create("."), strut_hdf5_create(".", scene_text)};
+  strut_sink *sinks[] = {strut_csv_create("."), strut_hdf5_create(".", scene_text, &error)};
   const strut_run_options options = {.sinks = sinks, .sink_count = 2};
 
   strut_status status = strut_setup_read(&setup, "scene", scene_text, sizeof scene_text - 1, NULL,
