@@ -46,7 +46,8 @@ static strut_status sweep(strut_error *error) {
                                         .column_count = plan.column_count};
   if (status == STRUT_OK) status = strut_slots_open("points.slots", &rows, &slots, error);
   if (status == STRUT_OK) status = strut_sweep_run(&plan, slots, &options, &state, error);
-  if (status == STRUT_OK) status = strut_study_table_write(".", "table.csv", &slots, 1, error);
+  const strut_slot_rows all = {.sources = &slots, .count = 1};
+  if (status == STRUT_OK) status = strut_study_table_write(".", "table.csv", &all, NULL, error);
   strut_slots_close(slots);
   strut_sweep_plan_free(&plan);
   strut_study_close(&file);
