@@ -38,7 +38,8 @@ static strut_status sweep(strut_error *error) {
                                         .column_count = plan.column_count};
   if (status == STRUT_OK) status = strut_slots_open("points.slots", &rows, &slots, error);
   if (status == STRUT_OK) status = strut_sweep_run(&plan, slots, &options, &state, error);
-  if (status == STRUT_OK) status = strut_study_table_write(".", "table.csv", &slots, 1, error);
+  const strut_slot_rows all = {.sources = &slots, .count = 1};
+  if (status == STRUT_OK) status = strut_study_table_write(".", "table.csv", &all, NULL, error);
   strut_slots_close(slots);
   strut_sweep_plan_free(&plan);
   strut_study_close(&file);
@@ -52,7 +53,7 @@ int main(void) {
   strut_summary summary = {0};
   strut_diagnostics diagnostics = {0};
   strut_error error = {0};
-  strut_sink *sinks[] = {strut_csv_create("."), strut_hdf5_create(".", scene_text)};
+  strut_sink *sinks[] = {strut_csv_create("."), strut_hdf5_create(".", scene_text, &error)};
   const strut_run_options options = {.sinks = sinks, .sink_count = 2};
 
   strut_status status = strut_setup_read(&setup, "scene", scene_text, sizeof scene_text - 1, NULL,

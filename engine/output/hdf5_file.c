@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <pthread.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
@@ -13,8 +14,11 @@
 
 enum { DEFLATE_LEVEL = 4 };
 
+static pthread_mutex_t alone = PTHREAD_MUTEX_INITIALIZER; /* the library is not thread-safe */
+
 strut_hdf5_quiet strut_hdf5_hush(void) {
   strut_hdf5_quiet quiet = {0};
+  pthread_mutex_lock(&alone);
   H5Eget_auto2(H5E_DEFAULT, &quiet.function, &quiet.data);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   return quiet;
@@ -22,6 +26,7 @@ strut_hdf5_quiet strut_hdf5_hush(void) {
 
 void strut_hdf5_unhush(strut_hdf5_quiet quiet) {
   H5Eset_auto2(H5E_DEFAULT, quiet.function, quiet.data);
+  pthread_mutex_unlock(&alone);
 }
 
 /* A type of texts; negative where it could not be made. */
@@ -394,7 +399,11 @@ static void free_sink(strut_sink *sink) {
   strut_release(self);
 }
 
-static void leave_at_exit(void) { H5dont_atexit(); }
+static void leave_at_exit(void) {
+  pthread_mutex_lock(&alone);
+  H5dont_atexit();
+  pthread_mutex_unlock(&alone);
+}
 
 extern STRUT_API const strut_hdf5_library strut_hdf5_table;
 const strut_hdf5_library strut_hdf5_table = {

@@ -14,7 +14,7 @@
 
 typedef struct strut_hdf5_library {
   strut_library_stamp stamp;
-  /** As strut_hdf5_create, but both texts must outlive the sink. NULL: out of memory. */
+  /** As strut_hdf5_create. NULL: out of memory. */
   strut_sink *(*create)(const char *directory, const char *scene_text);
   void (*free)(strut_sink *sink);
   /**

@@ -20,7 +20,7 @@
 
 enum { STRUT_HDF5_RANK = 3, STRUT_HDF5_USERS = STRUT_CHANNEL_COUNT };
 
-/** Switches HDF5's printing of errors off and back on. */
+/** Switches HDF5's printing of errors off and back on; between them no other thread is in the library. */
 typedef struct strut_hdf5_quiet {
   H5E_auto2_t function;
   void *data;

@@ -28,8 +28,12 @@ STRUT_API char *strut_path_csv(const struct strut_path *path, const strut_scene 
 
 /* ---- HDF5: trajectory.h5, a dataset for each channel, with dimension scales ---- */
 
-/** A sink that writes directory/trajectory.h5; `scene_text` is kept in it as an attribute. */
-STRUT_API strut_sink *strut_hdf5_create(const char *directory, const char *scene_text);
+/**
+ * A sink that writes directory/trajectory.h5; `scene_text` is kept in it as an attribute. Both texts outlive it. Other
+ * sinks may be used by other threads. NULL where the HDF5 library cannot be loaded, or memory is out.
+ */
+STRUT_API strut_sink *strut_hdf5_create(const char *directory, const char *scene_text,
+                                        strut_error *error);
 /**
  * For a program that uses the HDF5 library through strut only: the library does not tidy up at exit,
  * where it would crash after memory was out. All files are closed by then.

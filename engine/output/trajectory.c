@@ -256,7 +256,7 @@ size_t strut_data_dots(const strut_scene *scene, const strut_channel_row *row, s
   return count;
 }
 
-/* The sink in front of the HDF5 library, which is loaded when a run begins to write. */
+/* ---- the HDF5 library ---- */
 
 static atomic_bool leaves_at_exit;
 
@@ -268,41 +268,16 @@ strut_status strut_hdf5_ready(const strut_hdf5_library **library, strut_error *e
   return status;
 }
 
-typedef struct late_sink {
-  strut_sink sink;
+strut_sink *strut_hdf5_create(const char *directory, const char *scene_text, strut_error *error) {
   const strut_hdf5_library *library;
-  strut_sink *writer; /* NULL until the run begins, then `sink` is a copy of it */
-  const char *directory, *scene_text;
-  strut_arena arena;
-} late_sink;
-
-static strut_status begin_late(void *context, const strut_record_layout *layout,
-                               strut_error *error) {
-  late_sink *self = context;
-  if (!strut_has_memory(STRUT_HDF5_MEMORY)) return strut_no_memory(error, "while writing files");
-  strut_status status = strut_hdf5_ready(&self->library, error);
-  if (status != STRUT_OK) return status;
-  self->writer = self->library->create(self->directory, self->scene_text);
-  if (!self->writer) return strut_no_memory(error, "while writing files");
-  self->sink = *self->writer;
-  return self->sink.begin(self->sink.context, layout, error);
-}
-
-strut_sink *strut_hdf5_create(const char *directory, const char *scene_text) {
-  late_sink *self = strut_allocate(1, sizeof *self);
-  if (!self) return NULL;
-  self->sink = (strut_sink){.context = self, .begin = begin_late};
-  self->directory = strut_arena_format(&self->arena, "%s", directory);
-  self->scene_text = strut_arena_format(&self->arena, "%s", scene_text);
-  if (self->directory && self->scene_text) return &self->sink;
-  strut_hdf5_free(&self->sink);
-  return NULL;
+  bool memory = strut_has_memory(STRUT_HDF5_MEMORY);
+  if (memory && strut_hdf5_ready(&library, error) != STRUT_OK) return NULL;
+  strut_sink *sink = memory ? library->create(directory, scene_text) : NULL;
+  if (!sink) strut_no_memory(error, "while writing files");
+  return sink;
 }
 
 void strut_hdf5_free(strut_sink *sink) {
-  late_sink *self = (late_sink *)sink;
-  if (!self) return;
-  if (self->writer) self->library->free(self->writer);
-  strut_arena_free(&self->arena);
-  strut_release(self);
+  const strut_hdf5_library *library;
+  if (sink && strut_hdf5_load(&library, NULL) == STRUT_OK) library->free(sink);
 }

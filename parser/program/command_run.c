@@ -154,13 +154,12 @@ static strut_status begin_results(const strut_arguments *arguments, const strut_
   status = strut_data_copy(setup->scene.tables, setup->scene.table_count, arguments->output, error);
   if (status != STRUT_OK) return status;
   keep->scene_text = strut_setup_write(setup);
-  if (keep->scene_text) {
+  if (keep->scene_text)
     keep->csv = keep->sinks[keep->sink_count++] = strut_csv_create(keep->results.stage);
-    keep->hdf5 = keep->sinks[keep->sink_count++] =
-        strut_hdf5_create(keep->results.stage, keep->scene_text);
-  }
-  if (keep->csv && keep->hdf5) return STRUT_OK;
-  return strut_no_memory(error, "");
+  if (!keep->csv) return strut_no_memory(error, "");
+  keep->hdf5 = keep->sinks[keep->sink_count++] =
+      strut_hdf5_create(keep->results.stage, keep->scene_text, error);
+  return keep->hdf5 ? STRUT_OK : error->status;
 }
 
 /* Adds the summary and the scene, and makes all files appear. */

@@ -411,7 +411,7 @@ static strut_status merge(const strut_arguments *arguments, strut_sweep_study *r
   strut_merged merged;
   strut_error error = {0};
   strut_status status =
-      strut_merge_if(directory, refined ? check_refined : NULL, refined, &merged, &error);
+      strut_merge(directory, refined ? check_refined : NULL, refined, &merged, &error);
   if (status) return strut_print_failure(status, &error);
   if (!arguments->quiet) {
     printf("%s/%s: %lld points", directory, table_name, (long long)merged.points);

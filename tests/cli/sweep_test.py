@@ -118,8 +118,7 @@ ground: {stiffness: 1e5, damping: 100, friction: {mu: 0.3, stick_velocity: 1 mm/
 solver: {step: 0.1 ms}
 run: {duration: 1 ms}
 """)
-    write("deeper.yaml", "strut: 1\nstudy: s\nmodel: deep.yaml\naxes: [{depth: [0.01 mm, 20 mm, 30 mm]}]\n"
-          "keep: [velocity, outcome]\n")
+    write("deeper.yaml", "strut: 1\nstudy: s\nmodel: deep.yaml\nkeep: [outcome]\naxes: [{depth: [0.01 mm, 2 cm, 3 cm]}]\n")
     done = run("sweep", "deeper.yaml", "-o", "deeper", "--json")
     deep = [(w["code"], w["runs"], w["point"]) for w in json.loads(done.stdout)["warnings"]]
     check({("inside_ground", 2, 1), ("outcome", 3, 0)} <= set(deep) and "node block starts inside the ground" in done.stderr, f"{deep}")

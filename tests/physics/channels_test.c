@@ -15,7 +15,7 @@ static void record(const char *text, const char *const *settings, const char *di
   *run = model_read_text("a scene", text, settings);
   run->setup.experiment.channels = ALL;
   strut_sink *sinks[] = {strut_trajectory_sink(t, &run->setup.scene, ALL, STRUT_TRAJECTORY_ROOM),
-                         directory ? strut_hdf5_create(directory, "strut: 1\n") : NULL,
+                         directory ? strut_hdf5_create(directory, "strut: 1\n", &error) : NULL,
                          directory ? strut_csv_create(directory) : NULL};
   strut_run_options options = {.sinks = sinks, .sink_count = directory ? 3 : 1};
   assert_ok(strut_model_compile(&run->setup.scene, &run->model, &error));

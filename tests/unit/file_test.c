@@ -159,7 +159,6 @@ TEST(messages_name_the_file_and_the_reason) {
   assert_int_equal(mkdir(scratch_path("a.txt"), 0777), 0);
   assert_fails(strut_file_open(&file, scratch_path("."), "a.txt", &error), STRUT_FILE_TROUBLE,
                error, "Is a directory");
-  assert_int_equal(error.status, STRUT_FILE_TROUBLE);
 }
 
 TEST(directories) {

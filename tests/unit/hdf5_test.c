@@ -15,7 +15,7 @@
 
 static strut_status feed(const char *directory, size_t rows, strut_status run_status,
                          const char *scene, strut_error *error) {
-  strut_sink *sink = strut_hdf5_create(directory, scene);
+  strut_sink *sink = strut_hdf5_create(directory, scene, error);
   if (!sink) return STRUT_NO_MEMORY;
   strut_status status = sample_feed(sink, rows, run_status, error);
   strut_hdf5_free(sink);
@@ -168,7 +168,7 @@ TEST(rows_longer_than_a_chunk) {
       STRUT_CHANNEL_POSITION, "position", "m", NODES, 2, 1, names, axes};
   strut_record_layout layout = {1 + 2 * NODES, 1, &channel, ROWS};
   FREED double *rows = sample_rows(&layout, 0, ROWS);
-  strut_sink *sink = strut_hdf5_create(directory, "");
+  strut_sink *sink = strut_hdf5_create(directory, "", NULL);
   assert_ok(sink->begin(sink->context, &layout, NULL));
   assert_ok(sink->rows(sink->context, rows, ROWS, NULL));
   assert_ok(sink->end(sink->context, STRUT_OK, NULL));
@@ -181,7 +181,7 @@ TEST(rows_longer_than_a_chunk) {
 TEST(trouble_elsewhere_removes_the_file) {
   assert_ok(feed(directory, 7, STRUT_FILE_TROUBLE, "", NULL));
   assert_int_equal(scratch_count(directory), 0);
-  strut_sink *sink = strut_hdf5_create(directory, ""); /* begun, never ended */
+  strut_sink *sink = strut_hdf5_create(directory, "", NULL); /* begun, never ended */
   assert_ok(sink->begin(sink->context, sample_layout(), NULL));
   strut_hdf5_free(sink);
   assert_int_equal(scratch_count(directory), 0);

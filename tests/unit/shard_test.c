@@ -107,9 +107,8 @@ static void run_shard(strut_slots_description plan, strut_shard shard, int64_t m
 
 static char *table_of(int64_t n) {
   strut_merged merged;
-  strut_error error = {0};
   size_t length = 0;
-  if (strut_merge(scratch_path("d"), &merged, &error) != STRUT_OK) fail_msg("%s", error.message);
+  assert_ok(strut_merge(scratch_path("d"), NULL, NULL, &merged, NULL));
   assert_all_equal(merged.shards, n, merged.points, 23, merged.failed, 1);
   return scratch_read(scratch_path("d/table.csv"), &length);
 }
@@ -138,7 +137,7 @@ TEST(the_same_table) {
 static void expect_merge(strut_status expected, const char *words) {
   strut_merged merged;
   strut_error error = {0};
-  assert_int_equal(strut_merge(scratch_path("d"), &merged, &error), expected);
+  assert_int_equal(strut_merge(scratch_path("d"), NULL, NULL, &merged, &error), expected);
   if (!strstr(error.message, words)) fail_msg("\"%s\" lacks \"%s\"", error.message, words);
   assert_false(scratch_exists(scratch_path("d/table.csv")));
 }
@@ -200,7 +199,7 @@ TEST(no_memory) {
   for (int64_t k = 0; k < 3; k++) run_shard(study, (strut_shard){k, 3}, 100);
   REFUSE_EACH(n, status, 1) {
     strut_merged merged;
-    status = refused(n, strut_merge(scratch_path("d"), &merged, NULL));
+    status = refused(n, strut_merge(scratch_path("d"), NULL, NULL, &merged, NULL));
     if (status != STRUT_OK) assert_int_equal(scratch_count(scratch_path("d")), 1);
   }
 }
@@ -215,8 +214,8 @@ TEST(a_full_disk) {
   memset(filler, 'x', sizeof filler - 1);
   while (strut_file_write_text(disk, "filler", filler, &error) != STRUT_OK)
     filler[strlen(filler) - 1000] = '\0';
-  assert_fails(strut_merge(scratch_path("d"), &merged, &error), STRUT_FILE_TROUBLE, error,
-               "No space left on device");
+  assert_fails(strut_merge(scratch_path("d"), NULL, NULL, &merged, &error), STRUT_FILE_TROUBLE,
+               error, "No space left on device");
   assert_false(scratch_exists(scratch_path("d/table.csv")));
   assert_int_equal(scratch_count(scratch_path("d")), 1);
   scratch_unmount(disk);

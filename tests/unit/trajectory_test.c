@@ -20,7 +20,7 @@ static strut_setup crawler(double every) {
 static strut_status record(const strut_setup *setup, unsigned channels, size_t room, bool file,
                            strut_trajectory *t) {
   strut_sink *sinks[2] = {strut_trajectory_sink(t, &setup->scene, channels, room)};
-  if (file) sinks[1] = strut_hdf5_create(scratch_path(""), "strut: 1\n");
+  if (file) sinks[1] = strut_hdf5_create(scratch_path(""), "strut: 1\n", NULL);
   strut_run_options options = {.sinks = sinks, .sink_count = file ? 2 : 1, .force = true};
   OWN(strut_summary) summary;
   strut_status status = motion_try(setup, options, &summary, NULL);

@@ -434,14 +434,8 @@ strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_fit_refusal *re
   strut_fit_layout layout = {0};
   strut_status status = strut_fit_layout_make(plan, NULL, &layout, error);
   *refusal = layout.refused;
-  size_t most = plan->axis_columns + WORDS + NUMBERS + layout.aligned_count;
-  strut_slot_column *all = status ? NULL : strut_arena_allocate(&plan->arena, most, sizeof *all);
-  bool fine = all != NULL;
-  if (fine) {
-    memcpy(all, plan->columns, plan->axis_columns * sizeof *all);
-    plan->columns = all;
-    plan->column_count = plan->axis_columns, plan->column_capacity = most;
-  }
+  bool fine = !status;
+  if (fine) plan->column_count = plan->axis_columns;
   for (size_t i = 0; i < WORDS + NUMBERS && fine; i++)
     fine = strut_sweep_add_column(plan, "", columns[i].name, "1", columns[i].word);
   for (size_t i = 0; i < layout.aligned_count && fine; i++)

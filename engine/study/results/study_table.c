@@ -51,68 +51,35 @@ static void add_row(strut_buffer *line, const strut_slots_description *plan, int
   strut_buffer_add(line, "\n");
 }
 
-/* Which points a table has: those listed, or all, or all that have a row. */
-typedef struct selection {
-  strut_slots *const *sources; /* (count) */
-  size_t count;
-  const int64_t *listed; /* (most); NULL: all */
-  int64_t most;
-  bool partial;
-} selection;
-
-static strut_status write_table(const char *directory, const char *name, const selection *of,
-                                int64_t *rows, strut_error *error) {
+strut_status strut_study_table_write(const char *directory, const char *name,
+                                     const strut_slot_rows *of, int64_t *rows, strut_error *error) {
   strut_file file = {0};
   strut_buffer line = {0};
+  int64_t written = 0;
   const strut_slots_description *plan = strut_slots_description_of(of->sources[0]);
   strut_status status = strut_file_open(&file, directory, name, error);
   if (status) return status;
   add_header(&line, plan);
   status = write_line(&file, &line, error);
-  *rows = 0;
-  for (int64_t i = 0; i < (of->listed ? of->most : plan->points) && !status; i++) {
+  for (int64_t i = 0; i < (of->points ? of->point_count : plan->points) && !status; i++) {
     strut_result_slot row;
-    int64_t point = of->listed ? of->listed[i] : i;
+    int64_t point = of->points ? of->points[i] : i;
     strut_slots *source = of->sources[(size_t)point % of->count];
     if (of->partial && !strut_slots_done(source, point)) continue;
     if (strut_slots_get(source, point, &row)) {
       add_row(&line, plan, point, &row);
       status = write_line(&file, &line, error);
-      ++*rows;
+      written++;
     } else if (!of->partial) {
       status =
           strut_fail(error, STRUT_USAGE, "no table yet: point %lld is missing", (long long)point);
     }
   }
   strut_release(line.text);
+  if (rows) *rows = written;
   if (!status) return strut_file_commit(&file, error);
   strut_file_abandon(&file);
   return status;
-}
-
-strut_status strut_study_table_write(const char *directory, const char *name,
-                                     strut_slots *const *sources, size_t count,
-                                     strut_error *error) {
-  int64_t rows;
-  return write_table(directory, name, &(selection){.sources = sources, .count = count}, &rows,
-                     error);
-}
-
-strut_status strut_study_table_write_partial(const char *directory, const char *name,
-                                             strut_slots *const *sources, size_t count,
-                                             int64_t *rows, strut_error *error) {
-  int64_t unread;
-  const selection of = {.sources = sources, .count = count, .partial = true};
-  return write_table(directory, name, &of, rows ? rows : &unread, error);
-}
-
-strut_status strut_study_table_write_points(const char *directory, const char *name,
-                                            strut_slots *source, const int64_t *points,
-                                            size_t count, strut_error *error) {
-  int64_t rows;
-  const selection of = {
-      .sources = &source, .count = 1, .listed = points, .most = (int64_t)count, .partial = true};
-  return write_table(directory, name, &of, &rows, error);
 }
 
 static const char WHOLE[] = "points.slots", FOLDER[] = "shards";
@@ -468,8 +435,8 @@ static strut_status find(merge *self, strut_error *error) {
   return STRUT_OK;
 }
 
-strut_status strut_merge_if(const char *directory, strut_merge_check *enough, void *context,
-                            strut_merged *merged, strut_error *error) {
+strut_status strut_merge(const char *directory, strut_merge_check *enough, void *context,
+                         strut_merged *merged, strut_error *error) {
   merge m = {.directory = directory};
   *merged = (strut_merged){0};
   strut_status status = find(&m, error);
@@ -477,12 +444,9 @@ strut_status strut_merge_if(const char *directory, strut_merge_check *enough, vo
   if (status == STRUT_OK) status = check_study(&m, error);
   if (status == STRUT_OK)
     status = enough ? enough(context, m.sources, m.count, error) : check_gaps(&m, error);
-  if (status == STRUT_OK) merged->points = strut_slots_description_of(m.sources[0])->points;
-  if (status == STRUT_OK && enough)
-    status = strut_study_table_write_partial(directory, "table.csv", m.sources, m.count,
-                                             &merged->points, error);
-  else if (status == STRUT_OK)
-    status = strut_study_table_write(directory, "table.csv", m.sources, m.count, error);
+  const strut_slot_rows rows = {.sources = m.sources, .count = m.count, .partial = enough};
+  if (status == STRUT_OK)
+    status = strut_study_table_write(directory, "table.csv", &rows, &merged->points, error);
   merged->shards = m.found.count;
   for (size_t i = 0; i < m.count && status == STRUT_OK; i++) {
     merged->failed += strut_slots_failed(m.sources[i]);
@@ -491,8 +455,4 @@ strut_status strut_merge_if(const char *directory, strut_merge_check *enough, vo
   for (size_t i = 0; m.sources && i < m.count; i++) strut_slots_close(m.sources[i]);
   strut_arena_free(&m.arena);
   return status;
-}
-
-strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error) {
-  return strut_merge_if(directory, NULL, NULL, merged, error);
 }

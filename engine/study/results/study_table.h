@@ -11,27 +11,22 @@
 #include "engine/base/memory.h"
 #include "engine/study/results/slots.h"
 
+/** The rows of a table. Point p is in sources[p % count], as shards are; one source holds all. */
+typedef struct strut_slot_rows {
+  strut_slots *const *sources; /* (count) */
+  size_t count;
+  const int64_t *points; /* (point_count) which ones, in this order; NULL: all */
+  int64_t point_count;
+  bool partial; /* only those that there are; others may write the sources meanwhile */
+} strut_slot_rows;
+
 /**
- * Writes the table as directory/name, whole or not at all. Point p is in sources[p % count], as
- * shards are; one source holds all. The bytes depend on the rows only. STRUT_USAGE where a point is
- * missing.
+ * Writes the table as directory/name, whole or not at all; *rows (may be NULL) receives their number. The bytes depend
+ * on the rows only. STRUT_USAGE where a point is missing.
  */
 STRUT_API strut_status strut_study_table_write(const char *directory, const char *name,
-                                               strut_slots *const *sources, size_t count,
+                                               const strut_slot_rows *of, int64_t *rows,
                                                strut_error *error);
-
-/**
- * The same of the rows that there are, in their order; *rows (may be NULL) receives their number. Others
- * may write the sources meanwhile.
- */
-STRUT_API strut_status strut_study_table_write_partial(const char *directory, const char *name,
-                                                       strut_slots *const *sources, size_t count,
-                                                       int64_t *rows, strut_error *error);
-
-/** The same of some points, which have rows, in this order. */
-STRUT_API strut_status strut_study_table_write_points(const char *directory, const char *name,
-                                                      strut_slots *source, const int64_t *points,
-                                                      size_t count, strut_error *error);
 
 /* Parts of a study that are computed apart, on as many machines: shard k of n, counted from 0.
  *
@@ -90,15 +85,13 @@ typedef struct strut_merged {
   int64_t points, failed, inaccurate;
 } strut_merged;
 
-/**
- * Writes directory/table.csv from all shards in directory/shards, or from directory/points.slots.
- * STRUT_FILE_TROUBLE, saying which, where shards or points of them are missing; STRUT_USAGE where the
- * files are not of one study, or cover points twice. Nothing is written then.
- */
-STRUT_API strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error);
 /** Says whether the files, NULL where a shard is missing, have what a table needs. */
 typedef strut_status strut_merge_check(void *context, strut_slots *const *sources, size_t count,
                                        strut_error *error);
-/** The same of the rows that there are, where `check` accepts them. */
-STRUT_API strut_status strut_merge_if(const char *directory, strut_merge_check *check,
-                                      void *context, strut_merged *merged, strut_error *error);
+/**
+ * Writes directory/table.csv from all shards in directory/shards, or from directory/points.slots; with `check`, which
+ * accepts them, of the rows that there are. STRUT_FILE_TROUBLE, saying which, where shards or points of them are
+ * missing; STRUT_USAGE where the files are not of one study, or cover points twice. Nothing is written then.
+ */
+STRUT_API strut_status strut_merge(const char *directory, strut_merge_check *check, void *context,
+                                   strut_merged *merged, strut_error *error);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns of a study's table, and their cells from the summary of a run. */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,13 +26,27 @@ static bool is_taken(const strut_sweep_plan *plan, size_t count, const char *nam
   return found;
 }
 
+/* Room for one more column. */
+static bool make_room(strut_sweep_plan *plan) {
+  const size_t count = plan->column_count, more = 2 * count + 32;
+  if (count < plan->column_capacity) return true;
+  const strut_slot_column *columns = plan->columns;
+  const size_t *derived = plan->derived;
+  if (!STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->columns, more), STRUT_NEW(plan->derived, more)))
+    return false;
+  if (count) memcpy(plan->columns, columns, count * sizeof *columns);
+  if (count) memcpy(plan->derived, derived, count * sizeof *derived);
+  plan->column_capacity = more;
+  return true;
+}
+
 bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
                             const char *unit, bool word) {
   const char *text = strut_arena_format(&plan->arena, "%s%s", prefix, name);
   while (text && plan->column_count >= plan->axis_columns &&
          is_taken(plan, plan->axis_columns, text))
     text = strut_arena_format(&plan->arena, "run_%s", text);
-  assert(plan->column_count < plan->column_capacity);
+  if (!make_room(plan)) return false;
   bool kept = plan->column_count >= plan->axis_columns && !plan->by && text && !word;
   if (kept && (plan->smooth || strut_sweep_is_analysed(plan->study, text)))
     plan->derived[plan->derived_count++] = plan->column_count;
@@ -166,15 +179,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   }
   if (status) return status;
   size_t quantities = setup->experiment.quantity_count;
-  size_t most = plan->axis_columns + STRUT_KEPT_COLUMNS + 8 + 2 * scene->contact_count +
-                2 * scene->node_count + scene->member_count + 2 * quantities;
-  size_t by =
-      study->derivative_count ? study->derivative_count : setup->experiment.derivative_count;
-  if (study->sensitivity.wanted) by += study->axes[study->sensitivity.axis].column_count;
-  if (plan->scenes.vary) most += 3 * by * most;
-  plan->column_capacity = most;
-  if (!STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->columns, most), STRUT_NEW(plan->derived, most),
-                      STRUT_NEW(plan->quantities, quantities),
+  if (!STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->quantities, quantities),
                       STRUT_NEW(plan->names_member, quantities)) ||
       !add_kept(plan, setup))
     return strut_no_memory(error, "");

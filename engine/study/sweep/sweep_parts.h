@@ -173,8 +173,6 @@ strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_jo
 
 /* statics_point.c */
 
-/** Most columns that strut_kept_columns adds. */
-enum { STRUT_KEPT_COLUMNS = 64 + 3 * STRUT_STUDY_MOST_LOWEST };
 /** What is usual to keep of a computation that is no run. */
 strut_keep_set strut_statics_usual(strut_compute compute);
 /** Adds the columns of the structure and of what is computed, but those of its things. False: no memory. */

@@ -16,50 +16,18 @@
 #include "engine/scene/checks/check.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-/* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */
+/* Records one run of a sweep as `strut run -o` does. */
 
 typedef struct strut_sweep_record {
   strut_results results;
+  char *text; /* of the scene */
   strut_sink *hdf5;
-  strut_sink outer;
 } strut_sweep_record;
 
-static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
-  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
-  strut_status status;
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
-  status = hdf5->begin(hdf5->context, layout, error);
-  return status;
-}
-
-static strut_status take(void *context, const double *rows, size_t count, strut_error *error) {
-  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
-  strut_status status;
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
-  status = hdf5->rows(hdf5->context, rows, count, error);
-  return status;
-}
-
-static strut_status end(void *context, strut_status run_status, strut_error *error) {
-  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
-  strut_status status;
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
-  status = hdf5->end(hdf5->context, run_status, error);
-  return status;
-}
-
 static void discard(strut_sweep_record *record) {
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
   strut_hdf5_free(record->hdf5);
   strut_results_abandon(&record->results); /* does nothing once it is complete */
+  strut_release(record->text);
   strut_release(record);
 }
 
@@ -198,23 +166,21 @@ static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_j
   *record = NULL;
   if (!worker->plan->study->trajectories || !worker->options->directory) return STRUT_OK;
   strut_sweep_record *self = strut_allocate(1, sizeof *self);
-  char *text = worker->plan->scenes.text(&job->setup);
+  char *text = self ? self->text = worker->plan->scenes.text(&job->setup) : NULL;
   char *path = strut_arena_format(&arena, "%s/runs/%09lld", worker->options->directory,
                                   (long long)job->point);
   strut_status status = STRUT_OK;
   if (!self || !text || !path) status = strut_no_memory(error, "");
   if (!status) status = strut_results_begin(&self->results, path, error);
-  if (!status && !(self->hdf5 = strut_hdf5_create(self->results.stage, text)))
-    status = strut_no_memory(error, "");
+  if (!status && !(self->hdf5 = strut_hdf5_create(self->results.stage, text, error)))
+    status = error->status;
   if (!status) status = strut_file_write_text(self->results.stage, "scene.yaml", text, error);
   if (!status) status = strut_data_copy(scene->tables, scene->table_count, path, error);
-  strut_release(text);
   strut_arena_free(&arena);
   if (status && self) discard(self);
   if (status) return status;
   *record = self;
-  self->outer = (strut_sink){self, begin, take, end, self->hdf5->channels};
-  job->sink = &self->outer;
+  job->sink = self->hdf5;
   job->options.sinks = &job->sink;
   job->options.sink_count = 1;
   return STRUT_OK;

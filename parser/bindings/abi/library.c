@@ -575,7 +575,8 @@ OPTION(words, strut_option_words(option))
 strut_status abi_scratch_begin(abi_scratch *self, const char *name, strut_error *error) {
   const char *temporary = getenv("TMPDIR");
   bool usable = temporary && *temporary && strlen(temporary) < sizeof self->folder - 40;
-  snprintf(self->folder, sizeof self->folder, "%s/strut-XXXXXX", usable ? temporary : "/tmp");
+  snprintf(self->folder, sizeof self->folder, "%s/" STRUT_STAGE_PREFIX "XXXXXX",
+           usable ? temporary : "/tmp");
   if (!mkdtemp(self->folder))
     return strut_fail(error, STRUT_FILE_TROUBLE, "cannot create a temporary folder in '%s'",
                       usable ? temporary : "/tmp");
@@ -599,6 +600,5 @@ static void remove_file(const abi_scratch *self, const char *name) {
 
 void abi_scratch_end(const abi_scratch *self, const char *const *names) {
   for (size_t i = 0; names[i]; i++) remove_file(self, names[i]);
-  remove_file(self, STRUT_OWNERSHIP_LIST);
   rmdir(self->folder);
 }

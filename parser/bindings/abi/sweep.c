@@ -295,11 +295,11 @@ static void add_warnings(strutlib_result *result, const strut_sweep_state *state
 
 static strut_status complete(sweep *self, strutlib_result *result, const abi_scratch *scratch,
                              const strut_sweep_state *state, strut_error *what) {
-  strut_slots *const sources[] = {self->slots};
+  const strut_slot_rows rows = {.sources = &self->slots, .count = 1, .partial = true};
   strut_status status = add_table(&self->plan, self->slots, true, result, what);
   if (status) return status;
   add_warnings(result, state);
-  status = strut_study_table_write_partial(scratch->folder, table_name, sources, 1, NULL, what);
+  status = strut_study_table_write(scratch->folder, table_name, &rows, NULL, what);
   if (status != STRUT_OK) return status;
   result->table = abi_scratch_read(scratch, table_name, what);
   return result->table ? STRUT_OK : what->status;

@@ -149,18 +149,16 @@ static strut_status complete(const strut_study_job *job, const strut_study_form 
   const strut_arguments *arguments = job->arguments;
   const strut_study *study = job->study->plan.study;
   const bool stages = strut_study_has_stages(study), whole = stages || !job->shard.count;
-  strut_slots *const sources[] = {job->slots};
+  const strut_slot_rows rows = {
+      .sources = &job->slots, .count = 1, .partial = stages || job->refinement};
   strut_error error = {0};
   const char *table =
       whole ? strut_arena_format(&job->study->plan.arena, "%s/%s", arguments->output, table_name)
             : "one shard: 'strut sweep --merge' writes the table of all";
   strut_status status = table ? STRUT_OK : STRUT_NO_MEMORY;
   if (!status && form->write) status = form->write(job, result, &error);
-  if (!status && whole && (stages || job->refinement))
-    status =
-        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
-  else if (!status && whole)
-    status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
+  if (!status && whole)
+    status = strut_study_table_write(arguments->output, table_name, &rows, NULL, &error);
   if (status) return strut_tell_failure(arguments->listener, status, &error);
   if (whole) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
   if (whole) status = strut_sweep_figures_draw(job, table);

@@ -44,8 +44,8 @@ static strut_status write_best_rows(const strut_arguments *arguments, strut_slot
       points[count++] = result->fronts[i].points[k].worst;
   for (size_t i = 0; i < result->outcome_count && !result->front_count; i++)
     if (result->outcomes[i].best.evaluation >= 0) points[count++] = result->outcomes[i].best.worst;
-  strut_status status =
-      strut_study_table_write_points(arguments->output, "best.csv", slots, points, count, error);
+  const strut_slot_rows rows = {&slots, 1, points, (int64_t)count, true};
+  strut_status status = strut_study_table_write(arguments->output, "best.csv", &rows, NULL, error);
   strut_release(points);
   return status;
 }

@@ -354,25 +354,24 @@ static void show(void *context, const strut_sweep_state *state) {
   const strut_study_job *job = self->job;
   job->progress(job, state);
   if (job->shard.count || state->seconds < self->next) return;
-  strut_slots *const sources[] = {job->slots};
-  strut_study_table_write_partial(job->arguments->output, STRUT_PARTIAL_TABLE, sources, 1, NULL,
-                                  NULL);
+  const strut_slot_rows rows = {.sources = &job->slots, .count = 1, .partial = true};
+  strut_study_table_write(job->arguments->output, STRUT_PARTIAL_TABLE, &rows, NULL, NULL);
   if (self->interval < RAREST_PARTIAL) self->interval *= 2.0;
   self->next = state->seconds + self->interval;
 }
 
 /* Writes and reports the rows of a study that has ended before its last point. */
 static void write_partial(const strut_study_job *job) {
-  int64_t rows = 0;
+  int64_t count = 0;
   strut_error error = {0};
   const char *directory = job->arguments->output;
-  strut_slots *const sources[] = {job->slots};
+  const strut_slot_rows rows = {.sources = &job->slots, .count = 1, .partial = true};
   strut_status status =
-      strut_study_table_write_partial(directory, STRUT_PARTIAL_TABLE, sources, 1, &rows, &error);
+      strut_study_table_write(directory, STRUT_PARTIAL_TABLE, &rows, &count, &error);
   if (!strut_tell_failure(job->arguments->listener, status, &error))
     strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
                "%s/%s has the %lld rows that are done", directory, STRUT_PARTIAL_TABLE,
-               (long long)rows);
+               (long long)count);
 }
 
 strut_status strut_study_job_open(strut_study_job *job, const char *path, strut_error *error) {
