@@ -389,6 +389,8 @@ def judged():
             ("large", 3, begin, swing, both.replace("0.5", "5"), ", noise: 0.3 mm", 1, right, ()),
             ("coarse", 3, times(0, 10, 0.2), lambda t: swing(t, 0.02), both.replace("0.5", "0.1"), noise, 8,
              "not determined by these data", ("between the times of 'd'", "measure it more often")),
+            ("alias", 0.02, times(0, 60, 0.13246), lambda t: swing(t, 0.02), "k: {from: 20, to: 300, start: 40}", noise, 1,
+             "not determined by these data", ("between the times of 'd'", "give more starts")),  # fits as 25 N/m, too
             ("outside", 3, begin, swing, "k: {from: 120, to: 300}", noise, 2, "ends at a bound of its range", ("times the noise",)),
             ("period", 0, times(0.3, 100), lambda t: swing(t - 0.1, 0), "k: {from: 20, to: 300}", noise + delay, 2, right, ())):
         decay(at=at, motion=motion)
@@ -405,6 +407,9 @@ def judged():
           "excess" not in all_found["period"][1]["matches"][0], "a noise that is three times too large")
     found, said = all_found["period"]
     identified(found, k=100.0)
+    decay(at=begin)
+    unit = study("swings", "decay", "k: {from: 20, to: 300}", "place: d.x" + noise, 1).replace("csv}", "csv, units: {x: cm}}")
+    check("times those of 'x [cm]': check this unit" in fit("unit", unit, code=5)[1]["reason"], "numbers in m as cm")
     delay = said["alignments"][0]
     periods = (delay["also"] - delay["value"]) / (2 * math.pi * math.sqrt(0.1 / 100))
     check(abs(periods - round(periods)) < 0.01 and round(periods), f"{periods} periods beside: {delay}")
@@ -451,6 +456,13 @@ output: {every: 10 ms, channels: [position]}
     write("clip.csv", "\n".join([head, *(frame for frame in frames if 1.0 <= float(frame.split(",")[0]) <= 1.8)]) + "\n")
     found, said = fit("clip", study("cross", "clip", over, match))
     identified(found, k=100.0, c=0.5)
+    # A motion of another kind: what is sought in vain has an end.
+    at = times(0, 100, 0.02)
+    table("other.csv", {"t [s]": at, "x1 [m]": [1 + math.sin(9 * t * t) / 50 for t in at],
+                        "y1 [m]": [math.cos(4 * t ** 3) / 50 for t in at]}, 0)
+    fit("other", study("cross", "other", over + ", pull: {from: 5 mm, to: 50 mm}", match, 1), code=5)
+    spent = [int(float(r["evaluations"])) for r in rows("other", "table.csv") if r["end"] == "not finished"]
+    check(spent and max(spent) == 240, f"fits that do not finish: {spent}")
     # One that begins more than ten of its lengths late, but while the model runs.
     write("falls.yaml", """strut: 1
 parameters: {weight: 2 N}

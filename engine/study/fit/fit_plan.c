@@ -137,7 +137,7 @@ strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *i
       status = strut_no_memory(error, "");
   }
   if (!status) qsort(plan->candidates, plan->count, sizeof *plan->candidates, by_worth);
-  strut_fit_case_free(&one);
+  strut_arena_free(&one.arena);
   strut_fit_layout_free(&layout);
   return status;
 }

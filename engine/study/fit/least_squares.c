@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed", "none"};
+const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed", "none",
+                                                         "not finished"};
 
 /* Gradients, and changes of the sum, at which the method ends, relative. */
 static const double FLAT = 1e-15;
