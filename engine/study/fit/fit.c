@@ -544,27 +544,22 @@ static strut_status find_best(fitting *self, size_t count) {
     if (row->end == STRUT_FIT_FAILED || !isfinite(row->sum) || !(row->sum < least)) continue;
     result->best = i, result->found = true, self->least = row->sum;
   }
-  if (self->best == result->starts[result->best].parameters) return STRUT_OK;
-  if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
-  if (!result->found) {
-    strut_status failed = find_failure(self, &one);
-    strut_arena_free(&one.arena);
-    return failed;
-  }
   const strut_fit_row *best = &result->starts[result->best];
-  self->best = best->parameters;
-  result->used = (size_t)best->used;
-  result->freedom = (double)best->used - (double)result->parameters;
-  double variance = result->freedom > 0.0 ? best->sum / result->freedom : HUGE_VAL;
-  variance = fmax(variance, STRUT_FIT_EXACT * STRUT_FIT_EXACT);
-  double of_normal = gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0), of_student = HUGE_VAL;
-  if (result->freedom > 0.0) {
-    double t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, result->freedom);
-    of_student = t * t * variance;
+  if (self->best == best->parameters) return STRUT_OK;
+  double freedom = (double)best->used - (double)result->parameters, variance = HUGE_VAL, t = 1.0;
+  if (freedom > 0.0) {
+    t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, freedom);
+    variance = fmax(best->sum / freedom, STRUT_FIT_EXACT * STRUT_FIT_EXACT);
   }
-  result->scale = self->layout->noise_known ? 1.0 : sqrt(variance);
-  self->rise = self->layout->noise_known ? of_normal : of_student;
-  strut_status status = find_spectrum(self, &one);
+  bool known = self->layout->noise_known;
+  self->best = best->parameters;
+  self->rise = known ? gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0) : t * t * variance;
+  result->freedom = freedom;
+  result->scale = known ? 1.0 : sqrt(variance);
+  strut_status status = !strut_fit_case_create(self->layout, &one)
+                            ? strut_no_memory(self->points.error, "")
+                        : result->found ? find_spectrum(self, &one)
+                                        : find_failure(self, &one);
   strut_arena_free(&one.arena);
   return status;
 }

@@ -87,8 +87,8 @@ typedef struct strut_fit_result {
   strut_fit_direction *directions; /* that the numbers do not determine */
   strut_fit_residuals *residuals;  /* (matches) */
   double *residual,
-      *predicted; /* (numbers: matches, series, count) at the best, aligned; residuals 0 at gaps */
-  size_t used, agreeing;                   /* numbers; starts that agree with the best */
+      *predicted;  /* (numbers: matches, series, count) at the best, aligned; residuals 0 at gaps */
+  size_t agreeing; /* starts that agree with the best */
   double chi_square, freedom, probability; /* of a sum so large; NAN: the noise is not known */
   double scale;                  /* by which standard errors of unit noise are multiplied */
   const strut_fit_match *coarse; /* whose times are furthest apart for what moves; or NULL */

@@ -373,17 +373,13 @@ static bool is_skewed(const strut_fit_estimate *e) {
 #define ESTIMATE(X)                                                                                \
   X("parameter", "", TEXT(e->name), "its name", .column = {"parameter"}, .label = {""})            \
   X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
-  X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""})                          \
-  X("standard_error", "", IN(e->unit, e->error), "by the derivatives; null: there is none",        \
+  X("value", "", IN(e->unit, e->value), "of the best fit", .column = {"value"}, .label = {""})     \
+  X("standard_error", "", IN(e->unit, isfinite(e->error) ? e->error : (double)NAN),                \
+    "by the derivatives; null: there is none", .column = {"standard_error"},                       \
     .label = {"standard error"})                                                                   \
   X("low", "", IN(e->unit, e->low), "95 % interval, by the profile; null: not given",              \
-    .label = {"95 %, from"})                                                                       \
-  X("high", "", IN(e->unit, e->high), "likewise", .label = {"to"})                                 \
-  X(NULL, "", NUMBER(e->value), "", .column = {"value"})                                           \
-  X(NULL, "", NUMBER(isfinite(e->error) ? e->error : (double)NAN), "",                             \
-    .column = {"standard_error"})                                                                  \
-  X(NULL, "", NUMBER(e->low), "", .column = {"low"})                                               \
-  X(NULL, "", NUMBER(e->high), "", .column = {"high"})                                             \
+    .column = {"low"}, .label = {"95 %, from"})                                                    \
+  X("high", "", IN(e->unit, e->high), "likewise", .column = {"high"}, .label = {"to"})             \
   X("verdict", "", TEXT(verdicts[e->verdict]), "whether it is identified, or why not",             \
     .column = {"verdict"}, .label = {""})                                                          \
   X("linear_low", "", IF(is_skewed(e), NUMBER(e->linear_low)),                                     \
