@@ -261,7 +261,7 @@ static void add_cell(line *at, const strut_value_row *row, const strut_value *va
   char room[STRUT_VALUE_ROOM];
   const char *text;
   next_cell(at);
-  if (at->names && value->own_unit)
+  if (at->names && value->own_unit && !*row->column[0])
     strut_csv_add_text(at->csv, *value->own_unit ? "%s [%s]" : "%s", value->text, value->own_unit);
   else if (at->names)
     strut_buffer_add(at->csv, "%s%s", at->part, row->column[0]);

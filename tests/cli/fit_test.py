@@ -112,8 +112,7 @@ def crawls():
     turned = {a["name"]: a for a in said["alignments"]}
     check(abs(turned["film.rotate"]["value"] - math.radians(1)) < 4 * turned["film.rotate"]["standard_error"],
           f"rotate: {turned['film.rotate']}")
-    check([list(r) for r in rows("film", "fit.csv")][0] ==
-          ["parameter", "value", "standard_error", "low", "high", "verdict"], "columns of fit.csv")
+    check(read("film", "fit.csv").startswith(b"parameter,value,standard_error,low,high,verdict\n"), "fit.csv")
     near(rows("film", "covariance.csv")[0]["friction"], found["friction"]["standard_error"] ** 2, "covariance", 1e-9)
     run("run", "film/fitted.yaml", "--quiet")
     run("sweep", "film/uncertain.yaml", "--count", "-o", "uncertain")
@@ -179,8 +178,8 @@ run: {duration: 2 s}
 """)
     over = ("mass: {from: 50 kg, to: 150 kg}, viscous: {from: 50 N s/m, to: 400 N s/m}, "
             "coulomb: {from: 5 N, to: 50 N}, offset: {from: -10 N, to: 10 N}")
-    found, _ = fit("axis", study("axis-model", "axis", over, "cart.x: d.x, noise: 2 um"))
-    identified(found, 4.0, mass=M, viscous=FV, coulomb=FC, offset=-OFFSET)
+    identified(fit("axis", study("axis-model", "axis", over, "cart.x: d.x, noise: 2 um"))[0], 4.0,
+               mass=M, viscous=FV, coulomb=FC, offset=-OFFSET)
 
 
 # ---- a silicone member in a testing machine: loading and unloading differ ----
@@ -325,10 +324,9 @@ def alike():
     decay()
     found, said = fit("alike-fit", ALIKE, code=5)
     identified(found, k=100.0)
-    for name in ("one", "other"):
-        check(found[name]["verdict"] == "not determined by these data", f"{name}: {found[name]}")
-    check(said["undetermined"][0]["words"] == "one and other together" and
-          said["undetermined"][0]["determined"] == "one + 1 other", f"{said['undetermined']}")
+    check({found[name]["verdict"] for name in ("one", "other")} == {"not determined by these data"}, f"{found}")
+    alone, = said["undetermined"]
+    check((alone["words"], alone["determined"]) == ("one and other together", "one + 1 other"), f"{alone}")
     same = read("alike-fit", "table.csv")
     run("sweep", "alike-fit.yaml", "-o", "one-thread", "-q", "--threads", "1", code=5)
     check(read("one-thread", "table.csv") == same, "one thread: another table")
@@ -340,14 +338,13 @@ def alike():
     run("sweep", "alike-fit.yaml", "-o", "killed", "-q", code=5)
     check(read("killed", "table.csv") == same, "killed: another table")
     one = ALIKE.replace("    other: {from: 0.1 N s/m, to: 5 N s/m}\n", "")
-    found, said = fit("unknown-noise", one.replace(", noise: 0.1 mm", ""), code=0)
+    found, said = fit("unknown-noise", one.replace(", noise: 0.1 mm", ""))
     identified(found, one=1.0)
     check("probability" not in said, "a probability without a noise")
     decay(noise=0.0)  # what is left is the runs' own error, which is no reason to refuse
     identified(fit("exact", one.replace(", noise: 0.1 mm", ""))[0], one=1.0)
     decay()
-    wrong = one.replace("noise: 0.1 mm", "noise: 0.01 mm")
-    refused(fit("small-noise", wrong, code=5)[0], "the model does not explain the data")
+    refused(fit("small-noise", one.replace("noise: 0.1 mm", "noise: 0.01 mm"), code=5)[0], "the model does not explain the data")
 
 
 def ranges():
@@ -359,8 +356,7 @@ def ranges():
                   "body: {from: 10 g, to: 1 kg}", "b.x: d.x, noise: 0.1 mm", 8)
     found, said = fit("three", three, code=5)
     check([u["words"] for u in said["undetermined"]] == ["c and k and body together"], f"{said['undetermined']}")
-    for name in ("c", "k", "body"):
-        check(found[name]["verdict"] == "not determined by these data", f"{name}: {found[name]}")
+    check({p["verdict"] for p in found.values()} == {"not determined by these data"}, f"{found}")
     logs = three.replace("c: {from: 1 N s/m, to: 9 N s/m}, k: {from: 50 N/m, to: 200 N/m}",
                          "k: {from: 20 N/m, to: 900 N/m, scale: log}").replace("to: 1 kg}", "to: 1 kg, scale: log}")
     write("scaled.yaml", read("ratio.yaml").decode().replace("damping: c", "damping: 0.03 s*k"))
@@ -389,6 +385,8 @@ def judged():
             ("large", 3, begin, swing, both.replace("0.5", "5"), ", noise: 0.3 mm", 1, right, ()),
             ("coarse", 3, times(0, 10, 0.2), lambda t: swing(t, 0.02), both.replace("0.5", "0.1"), noise, 8,
              "not determined by these data", ("between the times of 'd'", "measure it more often")),
+            ("alias", 0.02, times(0, 60, 0.13246), lambda t: swing(t, 0.02), "k: {from: 20, to: 300, start: 40}", noise, 1,
+             "not determined by these data", ("between the times of 'd'", "give more starts")),  # fits as 25 N/m, too
             ("outside", 3, begin, swing, "k: {from: 120, to: 300}", noise, 2, "ends at a bound of its range", ("times the noise",)),
             ("period", 0, times(0.3, 100), lambda t: swing(t - 0.1, 0), "k: {from: 20, to: 300}", noise + delay, 2, right, ())):
         decay(at=at, motion=motion)
@@ -405,6 +403,9 @@ def judged():
           "excess" not in all_found["period"][1]["matches"][0], "a noise that is three times too large")
     found, said = all_found["period"]
     identified(found, k=100.0)
+    decay(at=begin)
+    unit = study("swings", "decay", "k: {from: 20, to: 300}", "place: d.x" + noise, 1).replace("csv}", "csv, units: {x: cm}}")
+    check("times those of 'x [cm]': check this unit" in fit("unit", unit, code=5)[1]["reason"], "numbers in m as cm")
     delay = said["alignments"][0]
     periods = (delay["also"] - delay["value"]) / (2 * math.pi * math.sqrt(0.1 / 100))
     check(abs(periods - round(periods)) < 0.01 and round(periods), f"{periods} periods beside: {delay}")
@@ -419,10 +420,9 @@ def delayed():
     mass_on_spring("swing", "stiff: 150 N/m, damp: 1 N s/m, pull: 10 mm", "1 m + pull", "1 kg",
                    "stiffness: stiff, damping: damp, rest_length: 1 m", "solver: {accuracy: 1 %}\nrun: {duration: 3 s}\n")
     over = "stiff: {from: 50, to: 400}, damp: {from: 0.05, to: 3}, pull: {from: 2 mm, to: 100 mm}"
-    found, _ = fit("own-time", study("swing", "swing", over, "b.x: d.x, noise: 0.0001", 8))
-    identified(found, pull=pull)
-    found, _ = fit("free-time", study("swing", "swing", over, "b.x: d.x, noise: 0.0001, align: {delay: free}", 8), code=5)
-    refused(found, "starts disagree")
+    identified(fit("own-time", study("swing", "swing", over, "b.x: d.x, noise: 0.0001", 8))[0], pull=pull)
+    free = study("swing", "swing", over, "b.x: d.x, noise: 0.0001, align: {delay: free}", 8)
+    refused(fit("free-time", free, code=5)[0], "starts disagree")
 
 
 def placed():
@@ -449,8 +449,12 @@ output: {every: 10 ms, channels: [position]}
     film("cross.yaml", "cross.csv", ("n1",), 0.0, 0.0, 1e-4)
     head, *frames = read("cross.csv").decode().splitlines()
     write("clip.csv", "\n".join([head, *(frame for frame in frames if 1.0 <= float(frame.split(",")[0]) <= 1.8)]) + "\n")
-    found, said = fit("clip", study("cross", "clip", over, match))
-    identified(found, k=100.0, c=0.5)
+    identified(fit("clip", study("cross", "clip", over, match))[0], k=100.0, c=0.5)
+    # A film that runs backwards: what is sought in vain has an end.
+    pairs = [(a.split(",", 1)[0], b.split(",", 1)[1]) for a, b in zip(frames, reversed(frames))]
+    write("back.csv", "\n".join([head, *map(",".join, pairs)]) + "\n")
+    fit("back", study("cross", "back", over + ", pull: {from: 5 mm, to: 50 mm}", match.replace("0.1 mm", "1 um"), 1), code=5)
+    check({r["end"]: r["evaluations"] for r in rows("back", "table.csv")}["not finished"] == "240", "no end")
     # One that begins more than ten of its lengths late, but while the model runs.
     write("falls.yaml", """strut: 1
 parameters: {weight: 2 N}
@@ -461,9 +465,8 @@ run: {duration: 10 s}
 """)
     late = times(9, 81)
     table("fall.csv", {"t [s]": late, "x [m]": [1.5 * t * t / 2 for t in late]}, 1e-3)
-    found, said = fit("fall", study("falls", "fall", "weight: {from: 0.5 N, to: 5 N}",
-                                    "b.x: d.x, noise: 1 mm, align: {shift: free, delay: free}", 1))
-    identified(found, weight=1.5)
+    fall = study("falls", "fall", "weight: {from: 0.5 N, to: 5 N}", "b.x: d.x, noise: 1 mm, align: {shift: free, delay: free}", 1)
+    identified(fit("fall", fall)[0], weight=1.5)
 
 
 def driven():
@@ -491,10 +494,9 @@ output: {every: 10 ms, channels: [position]}
     film("drive-on.yaml", "driven.csv", ("b",), 0.0, 0.1, 1e-4)
     head, *frames = read("driven.csv").decode().splitlines()
     write("driven.csv", "\n".join([head, *(frame for frame in frames if float(frame.split(",")[0]) >= 4.1)]) + "\n")
-    found, _ = fit("driven-on", study(
-        "drive-on", "driven", "phase: {from: -180 deg, to: 180 deg}, a: {from: 5 mm, to: 50 mm}",
-        "b.x: d.x, b.y: d.y, noise: 0.1 mm, align: {shift: free, delay: free}", 8))
-    identified(found, a=0.015, phase=0.5)
+    late = study("drive-on", "driven", "phase: {from: -180 deg, to: 180 deg}, a: {from: 5 mm, to: 50 mm}",
+                 "b.x: d.x, b.y: d.y, noise: 0.1 mm, align: {shift: free, delay: free}", 8)
+    identified(fit("driven-on", late)[0], a=0.015, phase=0.5)
 
 
 def vibrates():
@@ -510,9 +512,8 @@ run: {duration: 20 s}
     places = [1.0 + abs(size) * math.sin(w * t + math.atan2(size.imag, size.real)) for t in at]
     for seed, over in ((3, "k: {from: 50, to: 200}, c: {from: 0.2, to: 20}"), (5, "k: {from: 50, to: 200}")):
         table("vibrates.csv", {"t [s]": at, "x [m]": places}, 20e-6, seed)
-        found, _ = fit(f"vibrates-{seed}", study("vibrates", "vibrates", over, "b.x: d.x, noise: 20 um, align: "
-                                                 "{delay: free}", 4), code=5, err="about as small ends elsewhere")
-        refused(found, "starts disagree")
+        steady = study("vibrates", "vibrates", over, "b.x: d.x, noise: 20 um, align: {delay: free}", 4)
+        refused(fit(f"vibrates-{seed}", steady, code=5, err="about as small ends elsewhere")[0], "starts disagree")
 
 
 def coverage(count, align=""):
@@ -552,8 +553,6 @@ def refusals():
             ("time: d.t", "time: d.x", "time")):
         write("refused.yaml", "strut: 1\nstudy: refused\n" + good.replace(old, new))
         run("sweep", "refused.yaml", "-o", "refused", "-q", code=2, err=err)
-
-
     write("texts.yaml", read("alike.yaml").decode().replace("{one", "{start: \"low\", one") +
           "configurations: {low: {}, high: {b: [0.2, 0]}}\ninitial: {configuration: start}\n")
     write("set.yaml", "strut: 1\nstudy: x\nmodel: texts.yaml\n" + good[good.index("data:"):].replace(
@@ -566,10 +565,8 @@ def refusals():
 
 
 def long():
-    held = coverage(200)
-    check(all(0.90 <= share <= 0.98 for share in held.values()), f"intervals of 200 noises hold: {held}")
-    print("intervals hold beside alignments:", coverage(200, SEEN_IN_PART))
-    print("intervals hold:", held)
+    for held in (coverage(200), coverage(200, SEEN_IN_PART)):
+        check(all(0.90 <= share <= 0.98 for share in held.values()), f"intervals of 200 noises hold: {held}")
     crawler("crawler.yaml")
     film("crawler.yaml", "film.csv", ("n1", "n4"), math.radians(1))
     found, said = fit("fifty", FILM.replace("ALIGN", FREE).replace("STARTS", "50").replace(

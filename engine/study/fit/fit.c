@@ -30,6 +30,10 @@ static const double PLACED = 0.5, BETTER = 0.99;
 static const double FALL = 0.05; /* of a rise to an end of an interval: it falls */
 enum { STEPS_BESIDE = 6, PACES = 16, VAIN = 8 };
 
+/* Budgets of a start, and of what is sought beside where the least sum is so many times that of the noise. */
+enum { OF_START = 200, OF_LOST = 30 };
+static const double LOST = 1000.0;
+
 /* A fit with the best one's values, but another delay, is kept where no other is this near to it, in parts of the rise. */
 static const double HANDICAP = 2.0;
 
@@ -124,6 +128,18 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
   }
 }
 
+/* Fits all parameters but `held` (-1: none), in a few steps unless that is 0, which need not end near. */
+static strut_status solve(strut_fit_case *one, int32_t held, int32_t steps, double *parameters,
+                          strut_fit_solution *solution) {
+  strut_least_squares problem = strut_fit_problem(one);
+  problem.held = held;
+  if (steps) problem.most_steps = steps, problem.near = NEAR_FIRST;
+  problem.one_sided = steps == STEPS_FIRST;
+  strut_status status = strut_least_squares_solve(&problem, parameters, solution);
+  if (one->spent) solution->end = STRUT_FIT_SPENT;
+  return status;
+}
+
 /*
  * Fits short motions first, so that long ones begin near, and in the end once more where they are better placed
  * elsewhere.
@@ -142,11 +158,9 @@ static strut_status fit_from(strut_fit_case *one, bool delays, double *parameter
     memcpy(placed, parameters, bytes);
     if (k == SHARES && !(strut_fit_place(one, true, -1, 0, placed) < BETTER * solution->sum)) break;
     memcpy(parameters, placed, bytes);
-    strut_least_squares problem = strut_fit_problem(one);
-    problem.one_sided = !last;
-    if (!last) problem.most_steps = STEPS_FIRST, problem.near = NEAR_FIRST;
-    status = strut_least_squares_solve(&problem, parameters, solution);
-    if (solution->end == STRUT_FIT_FAILED) break;
+    status = solve(one, -1, last ? 0 : STEPS_FIRST, parameters, solution);
+    if (one->spent && !last) solution->sum = HUGE_VAL; /* of short motions alone */
+    if (one->spent || solution->end == STRUT_FIT_FAILED) break;
   }
   return status;
 }
@@ -158,7 +172,7 @@ static strut_status fit_start(strut_fit_case *one, int64_t start, double *parame
   for (int k = 0; k < STRUT_FIT_MOST_PLACES && !status && !one->status; k++) {
     strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
     status = fit_from(one, start % 4 != 1, parameters, solution);
-    if (solution->end != STRUT_FIT_FAILED) break;
+    if (one->spent || solution->end != STRUT_FIT_FAILED) break;
   }
   return status;
 }
@@ -176,27 +190,29 @@ static double slope_of_least(const fitting *self, size_t j, size_t i) {
   return common / own;
 }
 
+/* The nearest point of the box. */
+static void keep_inside(const strut_fit_layout *layout, double *parameters) {
+  for (size_t j = 0; j < layout->parameters; j++)
+    parameters[j] = fmin(fmax(parameters[j], layout->low[j]), layout->high[j]);
+}
+
 /*
  * The least sum where one parameter is held at a value. The others begin on the line of least sums; where that does not
  * converge at the best fit, too, and again where the sum is least so far.
  */
 static strut_status fit_held(const fitting *self, strut_fit_case *one, size_t i, double value,
                              double *parameters, strut_fit_solution *solution) {
-  const strut_fit_layout *layout = self->layout;
-  size_t n = layout->parameters;
+  size_t n = self->layout->parameters;
   strut_fit_solution latest;
-  strut_least_squares problem = strut_fit_problem(one);
   double at[STRUT_LEAST_SQUARES_MOST];
   strut_status status = STRUT_OK;
-  problem.held = (int32_t)i;
   for (int try = 0; try < 3 && !status && (!try || solution->end != STRUT_FIT_CONVERGED); try++) {
-    for (size_t j = 0; j < n; j++) {
-      double along = try == 0 ? (value - self->best[i]) * slope_of_least(self, j, i) : 0.0;
-      double from = try == 2 ? parameters[j] : self->best[j] + along;
-      at[j] = fmin(fmax(from, layout->low[j]), layout->high[j]);
-    }
+    double away = try == 0 ? value - self->best[i] : 0.0;
+    for (size_t j = 0; j < n; j++)
+      at[j] = try == 2 ? parameters[j] : self->best[j] + away * slope_of_least(self, j, i);
+    keep_inside(self->layout, at);
     at[i] = value;
-    status = strut_least_squares_solve(&problem, at, &latest);
+    status = solve(one, (int32_t)i, 0, at, &latest);
     if (try && !(latest.sum <= solution->sum)) continue;
     *solution = latest;
     memcpy(parameters, at, n * sizeof *parameters);
@@ -232,20 +248,19 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
     distance = between ? next : 0.5 * (inside + outside);
     if (!isfinite(distance)) distance = most;
   }
-  if (solution->sum - best < self->rise * (1.0 - 3.0 * FOUND)) solution->end = STRUT_FIT_STUCK;
+  if (solution->sum - best < self->rise * (1.0 - 3.0 * FOUND))
+    solution->end = one->spent ? STRUT_FIT_SPENT : STRUT_FIT_STUCK;
   return status;
 }
 
 /* Fits again from a place beside the best fit, as long as a few steps bring the sum within reach. */
 static strut_status fit_again(const fitting *self, strut_fit_case *one, double *parameters,
                               strut_fit_solution *solution) {
-  static const double reach[] = {FAR * REACH, REACH, HUGE_VAL};
+  static const int32_t steps[] = {FEW, STEPS_BESIDE, 0};
   strut_status status = STRUT_OK;
   for (int k = 0; k < 3 && !status; k++) {
-    strut_least_squares problem = strut_fit_problem(one);
-    if (k < 2) problem.most_steps = k ? STEPS_BESIDE : FEW, problem.near = NEAR_FIRST;
-    status = strut_least_squares_solve(&problem, parameters, solution);
-    if (!(solution->sum < reach[k] * self->least)) break;
+    status = solve(one, -1, steps[k], parameters, solution);
+    if (!(solution->sum < (k ? REACH : FAR * REACH) * self->least)) break;
   }
   return status;
 }
@@ -262,18 +277,16 @@ static bool walk(const fitting *self, strut_fit_case *one, size_t i, double *par
   double now[STRUT_LEAST_SQUARES_MOST], next[STRUT_LEAST_SQUARES_MOST];
   double reach = REACH * self->least;
   strut_fit_solution latest;
-  strut_least_squares problem = strut_fit_problem(one);
-  problem.held = (int32_t)i, problem.most_steps = STEPS_BESIDE, problem.near = NEAR_FIRST;
   if (pace * pace > FAR * reach * self->spectrum.covariance[i * n + i]) return false;
   for (double side = -pace; side <= pace; side += 2.0 * pace) {
     double step[STRUT_LEAST_SQUARES_MOST], peak = self->least;
     memcpy(now, self->best, bytes);
     for (size_t j = 0; j < n; j++) step[j] = side * slope_of_least(self, j, i);
     for (int k = 1; k <= PACES; k++) {
-      for (size_t j = 0; j < n; j++)
-        next[j] = fmin(fmax(now[j] + step[j], layout->low[j]), layout->high[j]);
+      for (size_t j = 0; j < n; j++) next[j] = now[j] + step[j];
+      keep_inside(layout, next);
       if (next[i] == now[i]) next[i] = side < 0.0 ? layout->high[i] : layout->low[i];
-      if (strut_least_squares_solve(&problem, next, &latest) || !(latest.sum < reach)) break;
+      if (solve(one, (int32_t)i, STEPS_BESIDE, next, &latest) || !(latest.sum < reach)) break;
       for (size_t j = 0; j < n; j++) step[j] = j == i ? side : next[j] - now[j];
       memcpy(now, next, bytes);
       peak = fmax(peak, latest.sum);
@@ -349,9 +362,7 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
                             what.kind == LOW ? -1.0 : 1.0, parameters, solution);
   strut_fit_choose(one, 1.0, (int32_t)what.item);
   memcpy(parameters, self->best, layout->parameters * sizeof *parameters);
-  strut_least_squares problem = strut_fit_problem(one);
-  if (one->used < layout->parameters) return STRUT_OK;
-  return strut_least_squares_solve(&problem, parameters, solution);
+  return one->used < layout->parameters ? STRUT_OK : solve(one, -1, 0, parameters, solution);
 }
 
 /* ---- rows ---- */
@@ -385,6 +396,10 @@ static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
   strut_sweep_end_row(cells, STRUT_OK, solution->end == STRUT_FIT_FAILED ? &one->error : NULL);
 }
 
+static bool is_lost(const fitting *self) {
+  return self->layout->noise_known && self->least > LOST * fmax(self->result->freedom, 1.0);
+}
+
 static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
   const fitting *self = context;
   strut_fit_case one;
@@ -395,11 +410,14 @@ static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
   job->cells.message[0] = '\0';
   job->warning_count = 0;
   job->status = strut_fit_case_create(self->layout, &one) ? STRUT_OK : STRUT_NO_MEMORY;
-  if (!job->status)
-    job->status = fit_row(self, &one, kind_of(self->layout->fit, point), parameters, &solution);
+  row_kind what = kind_of(self->layout->fit, point);
+  if (what.kind == START) one.budget = OF_START;
+  if (what.kind == BESIDE && is_lost(self)) one.budget = OF_LOST;
+  if (!job->status) job->status = fit_row(self, &one, what, parameters, &solution);
+  if (one.spent && solution.end == STRUT_FIT_NONE) solution.end = STRUT_FIT_SPENT;
   if (!job->status) job->status = one.status, job->error = one.error;
   if (!job->status) fill_row(self, job, point, &one, parameters, &solution);
-  strut_fit_case_free(&one);
+  strut_arena_free(&one.arena);
 }
 
 /* Reads a row back; one that was not needed is empty. False: memory is out. */
@@ -472,10 +490,6 @@ static strut_status run_stage(fitting *self, size_t first, size_t count, bool ne
   return status;
 }
 
-static bool has_residuals(const strut_fit_row *row) {
-  return row->end != STRUT_FIT_FAILED && isfinite(row->sum);
-}
-
 /* ---- what the best fit says ---- */
 
 static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
@@ -492,7 +506,8 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
       strut_fit_spectrum_find(jacobian, layout->count, n, &result->arena, &self->spectrum) &&
       problem.residuals(one, self->best, result->residual);
   if (fine) strut_fit_align_all(one, self->best, result->predicted);
-  if (fine) result->coarse = strut_fit_find_coarse(one, self->best, result->predicted);
+  if (fine)
+    result->coarse = strut_fit_find_coarse(one, self->best, result->predicted, &result->coarseness);
   if (one->status) return strut_fail(self->points.error, one->status, "%s", one->error.message);
   return fine ? STRUT_OK
               : strut_fail(self->points.error, STRUT_DIVERGED,
@@ -519,31 +534,27 @@ static strut_status find_best(fitting *self, size_t count) {
   for (size_t i = 0; i < count; i++) {
     double least = result->found ? self->least : HUGE_VAL;
     if (i >= result->start_count) least -= FALL * self->rise;
-    if (!has_residuals(&result->starts[i]) || !(result->starts[i].sum < least)) continue;
-    result->best = i, result->found = true, self->least = result->starts[i].sum;
-  }
-  if (self->best == result->starts[result->best].parameters) return STRUT_OK;
-  if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
-  if (!result->found) {
-    strut_status failed = find_failure(self, &one);
-    strut_fit_case_free(&one);
-    return failed;
+    const strut_fit_row *row = &result->starts[i];
+    if (row->end == STRUT_FIT_FAILED || !isfinite(row->sum) || !(row->sum < least)) continue;
+    result->best = i, result->found = true, self->least = row->sum;
   }
   const strut_fit_row *best = &result->starts[result->best];
-  self->best = best->parameters;
-  result->used = (size_t)best->used;
-  result->freedom = (double)best->used - (double)result->parameters;
-  double variance = result->freedom > 0.0 ? best->sum / result->freedom : HUGE_VAL;
-  variance = fmax(variance, STRUT_FIT_EXACT * STRUT_FIT_EXACT);
-  double of_normal = gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0), of_student = HUGE_VAL;
-  if (result->freedom > 0.0) {
-    double t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, result->freedom);
-    of_student = t * t * variance;
+  if (self->best == best->parameters) return STRUT_OK;
+  double freedom = (double)best->used - (double)result->parameters, variance = HUGE_VAL, t = 1.0;
+  if (freedom > 0.0) {
+    t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, freedom);
+    variance = fmax(best->sum / freedom, STRUT_FIT_EXACT * STRUT_FIT_EXACT);
   }
-  result->scale = self->layout->noise_known ? 1.0 : sqrt(variance);
-  self->rise = self->layout->noise_known ? of_normal : of_student;
-  strut_status status = find_spectrum(self, &one);
-  strut_fit_case_free(&one);
+  bool known = self->layout->noise_known;
+  self->best = best->parameters;
+  self->rise = known ? gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0) : t * t * variance;
+  result->freedom = freedom;
+  result->scale = known ? 1.0 : sqrt(variance);
+  strut_status status = !strut_fit_case_create(self->layout, &one)
+                            ? strut_no_memory(self->points.error, "")
+                        : result->found ? find_spectrum(self, &one)
+                                        : find_failure(self, &one);
+  strut_arena_free(&one.arena);
   return status;
 }
 
@@ -569,23 +580,26 @@ static bool fill_estimates(fitting *self) {
                                      .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
                                      .value = value,
                                      .also = (double)NAN,
-                                     .error = slope * error * result->scale};
+                                     .error = slope * error * result->scale,
+                                     .verdict = STRUT_FIT_IDENTIFIED};
     estimate->low = estimate->linear_low = value - slope * error * half;
     estimate->high = estimate->linear_high = value + slope * error * half;
-    estimate->from = strut_fit_value(layout, i, layout->low[i]);
-    estimate->to = strut_fit_value(layout, i, layout->high[i]);
-    if (!(estimate->error < estimate->to - estimate->from)) estimate->error = HUGE_VAL;
+    double from = strut_fit_value(layout, i, layout->low[i]);
+    if (!(estimate->error < strut_fit_value(layout, i, layout->high[i]) - from))
+      estimate->error = HUGE_VAL;
     for (size_t j = first; j < n && i >= first; j++)
       result->correlation[(i - first) * result->variable_count + j - first] =
           covariance[i * n + j] / (error * sqrt(covariance[j * n + j]));
-    const strut_fit_row *ends_of = i < first ? NULL : &result->ends[2 * (i - first)];
-    if (!ends_of) continue;
-    estimate->low = ends_of[0].values[i];
-    estimate->high = ends_of[1].values[i];
-    estimate->open_low = ends_of[0].end != STRUT_FIT_CONVERGED;
-    estimate->open_high = ends_of[1].end != STRUT_FIT_CONVERGED;
-    estimate->at_bound =
-        fmin(self->best[i] - layout->low[i], layout->high[i] - self->best[i]) < AT_BOUND;
+    for (size_t side = 0; side < 2 && i >= first; side++) {
+      const strut_fit_row *end = &result->ends[2 * (i - first) + side];
+      *(side ? &estimate->high : &estimate->low) =
+          end->end == STRUT_FIT_CONVERGED ? end->values[i] : (double)NAN;
+    }
+    if (!isfinite(estimate->low + estimate->high + estimate->error))
+      estimate->verdict = STRUT_FIT_UNDETERMINED;
+    estimate->at_bound = i >= first && fmin(self->best[i] - layout->low[i],
+                                            layout->high[i] - self->best[i]) < AT_BOUND;
+    if (estimate->at_bound) estimate->verdict = STRUT_FIT_BOUND;
   }
   return true;
 }
@@ -605,6 +619,7 @@ static strut_status run_stages(fitting *self) {
   strut_status status = run_stage(self, 0, starts, true);
   if (!status) status = find_best(self, starts);
   for (int round = 0; round < STRUT_FIT_ROUNDS && !status && !result->settled; round++) {
+    if (round && is_lost(self)) break;
     size_t best = result->best, all = starts + result->beside_count;
     status = run_stage(self, all, beside, result->found);
     result->beside_count += beside;
@@ -647,5 +662,3 @@ strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
   if (!self.points.status) self.points.status = status;
   return strut_points_end(&self.points);
 }
-
-void strut_fit_result_free(strut_fit_result *result) { strut_arena_free(&result->arena); }

@@ -33,12 +33,11 @@ typedef enum strut_fit_verdict {
 typedef struct strut_fit_estimate {
   const char *name, *unit; /* unit "1": none */
   double value;
-  double error;     /* standard error, by the derivatives; HUGE_VAL: there is none */
-  double low, high; /* 95 %, by the profile; NAN: not given. Of an alignment by the error */
+  double error; /* standard error, by the derivatives; HUGE_VAL: there is none */
+  double low,
+      high; /* 95 %, by the profile; NAN: not given, or without an end. Of an alignment by the error */
   double linear_low, linear_high; /* 95 %, by the error */
-  bool open_low, open_high;       /* the profile has no end there, or none is known */
   bool at_bound;                  /* the value is an end of its range */
-  double from, to;                /* its range */
   double also;                    /* another delay that fits as well; NAN: none does */
   strut_fit_verdict verdict;
 } strut_fit_estimate;
@@ -88,11 +87,12 @@ typedef struct strut_fit_result {
   strut_fit_direction *directions; /* that the numbers do not determine */
   strut_fit_residuals *residuals;  /* (matches) */
   double *residual,
-      *predicted; /* (numbers: matches, series, count) at the best, aligned; residuals 0 at gaps */
-  size_t used, agreeing;                   /* numbers; starts that agree with the best */
+      *predicted;  /* (numbers: matches, series, count) at the best, aligned; residuals 0 at gaps */
+  size_t agreeing; /* starts that agree with the best */
   double chi_square, freedom, probability; /* of a sum so large; NAN: the noise is not known */
   double scale;                  /* by which standard errors of unit noise are multiplied */
-  const strut_fit_match *coarse; /* its times are too far apart; or NULL */
+  const strut_fit_match *coarse; /* whose times are furthest apart for what moves; or NULL */
+  double coarseness;             /* 0: not at all */
   const char *reason; /* why the model does not explain the data or starts disagree; or "" */
   const strut_fit_series
       *missing; /* the model has no such number, so that nothing is found; or NULL */
@@ -111,11 +111,10 @@ typedef struct strut_fit_refusal {
  */
 STRUT_API strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_fit_refusal *refusal,
                                              strut_error *error);
-/** As strut_sweep_run. The result is complete on STRUT_OK; release it with strut_fit_result_free in any case. */
+/** As strut_sweep_run. The result is complete on STRUT_OK; release its arena in any case. */
 STRUT_API strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
                                      const strut_sweep_options *options, strut_sweep_state *state,
                                      strut_fit_result *result, strut_error *error);
-STRUT_API void strut_fit_result_free(strut_fit_result *result);
 /** Draws fit.svg, residuals.svg and profiles.svg into the directory. */
 STRUT_API strut_status strut_fit_figures(const strut_fit_result *result, const char *directory,
                                          strut_error *error);

@@ -189,7 +189,7 @@ static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
 static strut_status check_count(strut_fit_layout *layout, strut_error *error) {
   strut_fit_case all;
   bool fine = strut_fit_case_create(layout, &all);
-  strut_fit_case_free(&all);
+  strut_arena_free(&all.arena);
   if (!fine) return strut_no_memory(error, "");
   if (all.used >= layout->parameters) return STRUT_OK;
   layout->refused.series = layout->fit->matches[0].series;

@@ -75,6 +75,8 @@ typedef struct strut_fit_case {
   double *weight;      /* (count) factors of residuals; 0: a gap, or it does not count */
   size_t used;         /* residuals that count */
   int64_t evaluations; /* of the residuals, so far */
+  int64_t budget;      /* of them, at most, for each parameter and once more */
+  bool spent;          /* that was too little */
   double *predicted;   /* (count) by the model, not aligned */
   double *latest;      /* (parameters) of that */
   bool known;
@@ -104,9 +106,8 @@ double strut_fit_span(const strut_fit_match *match);
 const strut_quantity_definition *strut_fit_quantity(const strut_experiment *experiment,
                                                     const char *name);
 
-/** All residuals count. False: memory is out. */
+/** All residuals count. False: memory is out. Release the arena, after a failure too. */
 bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one);
-void strut_fit_case_free(strut_fit_case *one);
 /** The problem of the case; `near` and most_steps are the caller's to change. */
 strut_least_squares strut_fit_problem(strut_fit_case *one);
 /** The numbers of all series as the case has predicted them at the parameters, aligned: (count). */
@@ -119,11 +120,11 @@ void strut_fit_align_all(const strut_fit_case *one, const double *parameters, do
 double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size_t rank,
                        double *parameters);
 /**
- * A match whose times are too far apart to show what the motion does between them, so that others would do as well; or
- * NULL. `at`: its numbers at the parameters, aligned.
+ * The match whose motion leaves the lines between its numbers the most, by more than the noise, or NULL; and by which part
+ * of the squared steps from number to number. `at`: the numbers at the parameters, aligned.
  */
 const strut_fit_match *strut_fit_find_coarse(strut_fit_case *one, const double *parameters,
-                                             const double *at);
+                                             const double *at, double *coarseness);
 /** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
 

@@ -101,43 +101,42 @@ static int by_worth(const void *a, const void *b) {
   return strcmp(first->name, second->name);
 }
 
+/* The derivatives at the first place in the ranges where the model can be computed. */
+static strut_status differentiate(const strut_fit_plan *plan, strut_fit_case *one, double *residual,
+                                  double *jacobian, strut_error *error) {
+  strut_least_squares problem = strut_fit_problem(one);
+  for (int k = 0; k < STRUT_FIT_MOST_PLACES && !one->status; k++) {
+    strut_fit_choose_start(one->layout, k, plan->at);
+    if (strut_least_squares_jacobian(&problem, plan->at, residual, jacobian)) return STRUT_OK;
+  }
+  return one->status ? strut_fail(error, one->status, "%s", one->error.message)
+                     : strut_fail(error, STRUT_DIVERGED,
+                                  "the model cannot be computed at any of %d places in the ranges",
+                                  STRUT_FIT_MOST_PLACES);
+}
+
 strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *interrupt,
                                  strut_fit_plan *plan, strut_error *error) {
   strut_fit_layout layout = {0};
   strut_fit_case one = {0};
+  planning self = {.layout = &layout, .plan = plan};
+  double *jacobian, *residual;
   *plan = (strut_fit_plan){.fit = of->study->fit, .variable_count = of->study->fit->variable_count};
   strut_status status = strut_fit_layout_make(of, interrupt, &layout, error);
   size_t n = layout.parameters, most = 2;
   for (size_t m = 0; m < plan->fit->match_count; m++)
     most += 1 + plan->fit->matches[m].series_count;
-  double *jacobian, *residual;
-  planning self = {.layout = &layout, .plan = plan};
-  bool fine =
-      STRUT_ALLOCATE(&layout.arena, STRUT_NEW(jacobian, layout.count * n + 1),
-                     STRUT_NEW(residual, layout.count + 1),
-                     STRUT_NEW(self.part, layout.count * n + 1)) &&
-      STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->candidates, most), STRUT_NEW(plan->at, n + 1)) &&
-      (status || strut_fit_case_create(&layout, &one));
-  self.jacobian = jacobian;
-  if (!status && !fine) status = strut_no_memory(error, "");
-  if (!status) {
-    strut_least_squares problem = strut_fit_problem(&one);
-    fine = false;
-    for (int k = 0; k < STRUT_FIT_MOST_PLACES && !fine && !one.status; k++) {
-      strut_fit_choose_start(&layout, k, plan->at);
-      fine = strut_least_squares_jacobian(&problem, plan->at, residual, jacobian);
-    }
-    if (!fine && one.status)
-      status = strut_fail(error, one.status, "%s", one.error.message);
-    else if (!fine)
-      status = strut_fail(error, STRUT_DIVERGED,
-                          "the model cannot be computed at any of %d places in the ranges",
-                          STRUT_FIT_MOST_PLACES);
-    else if (!add_all(&self))
-      status = strut_no_memory(error, "");
-  }
+  if (!status &&
+      !(STRUT_ALLOCATE(&layout.arena, STRUT_NEW(jacobian, layout.count * n),
+                       STRUT_NEW(residual, layout.count), STRUT_NEW(self.part, layout.count * n)) &&
+        STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->candidates, most), STRUT_NEW(plan->at, n)) &&
+        strut_fit_case_create(&layout, &one)))
+    status = strut_no_memory(error, "");
+  if (!status) status = differentiate(plan, &one, residual, jacobian, error);
+  if (!status) self.jacobian = jacobian;
+  if (!status && !add_all(&self)) status = strut_no_memory(error, "");
   if (!status) qsort(plan->candidates, plan->count, sizeof *plan->candidates, by_worth);
-  strut_fit_case_free(&one);
+  strut_arena_free(&one.arena);
   strut_fit_layout_free(&layout);
   return status;
 }

@@ -18,6 +18,9 @@ static const double RARE = 1e-4;
 /* Nor are successive residuals that are correlated by so many standard errors. */
 static const double CORRELATED = 5.0;
 
+/* Numbers that differ so many times from the model's may have another unit. */
+static const double MUCH = 5.0;
+
 /* Starts agree whose sums differ by this part of what an end of an interval takes. */
 static const double SAME = 0.05;
 
@@ -26,6 +29,12 @@ static const double AWAY = 2.0;
 
 /* There may be many such fits: one is left out only if its sum excludes it more surely than an interval has to. */
 static const double ELSEWHERE = 0.995;
+
+/*
+ * A motion whose times are so coarse, as those of a vibration measured 2.3 times a period, is not determined; nor, where
+ * no second start has ended at the same fit, one of 3.4 times a period, which may be the alias of a faster one.
+ */
+static const double COARSE = 0.15, ALIAS = 0.05;
 
 /* Residuals too large show a wrong model only where so many starts, and this part of them, end at the best fit. */
 enum { SEVERAL = 2 };
@@ -78,9 +87,23 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   of->chi_square = layout->noise_known ? square : (double)NAN;
 }
 
-/* Is the sum of squares of a right model, in units of the noise, hardly ever so large? */
-static bool is_unexplained(double sum, double freedom) {
-  return gsl_cdf_chisq_Q(sum, fmax(freedom, 1.0)) < RARE;
+/* "; the model's numbers are 100 times those of 'x [cm]': check this unit", where a match has such numbers, or "". */
+static const char *doubt_unit(strut_fit_result *result, const strut_fit_match *match) {
+  const strut_data_column *column = match->series[0].column;
+  double sums[2][3] = {{0.0}};
+  for (size_t i = 0; column && i < match->count; i++) {
+    const double pair[] = {column->values[i], result->predicted[match->series[0].first + i]};
+    for (int k = 0; k < 2 && !isnan(pair[0]); k++)
+      sums[k][0] += 1.0, sums[k][1] += pair[k], sums[k][2] += pair[k] * pair[k];
+  }
+  for (int k = 0; k < 2 && match->align.shift; k++)
+    sums[k][2] -= sums[k][1] * sums[k][1] / fmax(sums[k][0], 1.0);
+  double times = sqrt(sums[1][2] / sums[0][2]);
+  if (!column || !(fabs(log(times)) > log(MUCH))) return "";
+  return strut_arena_format(&result->arena,
+                            "; the model's numbers are %.2g times those of '%.40s [%.20s]': check "
+                            "this unit",
+                            times, column->name, column->unit);
 }
 
 bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result) {
@@ -97,7 +120,7 @@ bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *resul
   for (size_t m = 0; m <= matches && known && flaw && !*flaw; m++) {
     const strut_fit_residuals *of = m ? &result->residuals[m - 1] : NULL;
     double square = of ? of->chi_square : sum, freedom = of ? (double)of->used : result->freedom;
-    if (is_unexplained(square, freedom))
+    if (gsl_cdf_chisq_Q(square, fmax(freedom, 1.0)) < RARE)
       flaw = strut_arena_format(&result->arena,
                                 "the residuals%s%.40s%s are %.3g times the noise: chi square %.4g "
                                 "with %.0f degrees of freedom",
@@ -110,8 +133,11 @@ bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *resul
                                 "successive residuals of '%.40s' are correlated, by %.3g standard "
                                 "errors",
                                 result->residuals[m].match->name, result->residuals[m].lag);
-  result->reason = flaw;
-  return flaw != NULL;
+  const char *doubt = "";
+  for (size_t m = 0; m < matches && flaw && *flaw && doubt && !*doubt; m++)
+    doubt = doubt_unit(result, &layout->fit->matches[m]);
+  result->reason = flaw && doubt ? strut_arena_format(&result->arena, "%s%s", flaw, doubt) : NULL;
+  return result->reason != NULL;
 }
 
 /* By how much the noise of a match is larger than its residuals, where it is too large for them; else 0. */
@@ -144,7 +170,8 @@ static const char *name_determined(strut_fit_result *result, size_t i, size_t j,
       !variables[j - aligned].logarithmic)
     return strut_arena_format(&result->arena, "%.40s %c %.3g %.40s", first->name,
                               other < 0.0 ? '-' : '+', fabs(other), second->name);
-  double power = other * log(first->to / first->from) / log(second->to / second->from);
+  const strut_search_variable *one = &variables[i - aligned], *two = &variables[j - aligned];
+  double power = other * log(one->to / one->from) / log(two->to / two->from);
   char text[40] = "";
   if (fabs(fabs(power) - 1.0) > WHOLE) snprintf(text, sizeof text, "^%.3g", fabs(power));
   return strut_arena_format(&result->arena, "%.40s%c%.40s%s", first->name, power < 0.0 ? '/' : '*',
@@ -157,19 +184,19 @@ static const char *name_determined(strut_fit_result *result, size_t i, size_t j,
  */
 static bool describe_direction(strut_fit_result *result, const bool *takes, const double *part,
                                strut_fit_direction *direction) {
-  char text[300] = "";
-  size_t used = 0, taken = 0, pair[2] = {0, 0};
+  strut_buffer text = {0};
+  size_t taken = 0, pair[2] = {0, 0};
   for (size_t k = 0; k < result->parameters; k++) {
     size_t i = (k + result->aligned_count) % result->parameters;
     if (!takes[i]) continue;
+    strut_buffer_add(&text, "%s%s", taken ? " and " : "", result->estimates[i].name);
     if (taken < 2) pair[taken] = i;
     taken++;
-    if (used < sizeof text - 60)
-      used += (size_t)snprintf(text + used, sizeof text - used, "%s%.40s", used ? " and " : "",
-                               result->estimates[i].name);
   }
-  if (taken > 1) snprintf(text + used, sizeof text - used, " together");
-  direction->words = strut_arena_text(&result->arena, text, strlen(text));
+  if (taken > 1) strut_buffer_add(&text, " together");
+  char *words = strut_buffer_take(&text);
+  direction->words = words ? strut_arena_text(&result->arena, words, strlen(words)) : NULL;
+  strut_release(words);
   if (taken == 2)
     direction->determined =
         name_determined(result, pair[0], pair[1], -part[pair[0]] / part[pair[1]]);
@@ -289,29 +316,21 @@ static const char *qualify_flaw(const char *flaw, strut_fit_result *result, bool
 
 /* ---- verdicts ---- */
 
-static strut_fit_verdict first_verdict(const strut_fit_estimate *estimate) {
-  bool open = estimate->open_low || estimate->open_high || !isfinite(estimate->error);
-  return estimate->at_bound ? STRUT_FIT_BOUND
-         : open             ? STRUT_FIT_UNDETERMINED
-                            : STRUT_FIT_IDENTIFIED;
-}
-
 bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      strut_fit_result *result) {
   size_t first = layout->aligned_count;
   const char *flaw = result->reason;
   bool far = false;
-  for (size_t i = 0; i < layout->parameters; i++)
-    result->estimates[i].verdict = first_verdict(&result->estimates[i]);
   if (!find_directions(layout, spectrum, result)) return false;
   result->reason = compare_starts(layout, flaw, result);
   if (*flaw) result->reason = qualify_flaw(flaw, result, &far);
-  bool coarse = !*flaw && result->coarse;
+  bool lone = result->agreeing < 2;
+  bool coarse = !*flaw && result->coarseness > (lone ? ALIAS : COARSE);
   if (coarse)
     result->reason = strut_arena_format(&result->arena,
                                         "the motion changes much between the times of '%.40s', so "
-                                        "that others would do as well: measure it more often",
-                                        result->coarse->name);
+                                        "that others would do as well: measure it more often%s",
+                                        result->coarse->name, lone ? ", and give more starts" : "");
   if (!result->reason) return false;
   strut_fit_verdict verdict = coarse          ? STRUT_FIT_UNDETERMINED
                               : *flaw && !far ? STRUT_FIT_UNEXPLAINED
@@ -321,8 +340,7 @@ bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *s
     bool bound = estimate->at_bound && verdict == STRUT_FIT_UNEXPLAINED;
     if (*result->reason && !bound) estimate->verdict = verdict;
     bool none = *result->reason || !isfinite(estimate->error); /* is known: nor is it given */
-    if (none || estimate->open_low) estimate->low = (double)NAN;
-    if (none || estimate->open_high) estimate->high = (double)NAN;
+    if (none) estimate->low = estimate->high = (double)NAN;
   }
   return true;
 }
@@ -355,17 +373,13 @@ static bool is_skewed(const strut_fit_estimate *e) {
 #define ESTIMATE(X)                                                                                \
   X("parameter", "", TEXT(e->name), "its name", .column = {"parameter"}, .label = {""})            \
   X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
-  X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""})                          \
-  X("standard_error", "", IN(e->unit, e->error), "by the derivatives; null: there is none",        \
+  X("value", "", IN(e->unit, e->value), "of the best fit", .column = {"value"}, .label = {""})     \
+  X("standard_error", "", IN(e->unit, isfinite(e->error) ? e->error : (double)NAN),                \
+    "by the derivatives; null: there is none", .column = {"standard_error"},                       \
     .label = {"standard error"})                                                                   \
   X("low", "", IN(e->unit, e->low), "95 % interval, by the profile; null: not given",              \
-    .label = {"95 %, from"})                                                                       \
-  X("high", "", IN(e->unit, e->high), "likewise", .label = {"to"})                                 \
-  X(NULL, "", NUMBER(e->value), "", .column = {"value"})                                           \
-  X(NULL, "", NUMBER(isfinite(e->error) ? e->error : (double)NAN), "",                             \
-    .column = {"standard_error"})                                                                  \
-  X(NULL, "", NUMBER(e->low), "", .column = {"low"})                                               \
-  X(NULL, "", NUMBER(e->high), "", .column = {"high"})                                             \
+    .column = {"low"}, .label = {"95 %, from"})                                                    \
+  X("high", "", IN(e->unit, e->high), "likewise", .column = {"high"}, .label = {"to"})             \
   X("verdict", "", TEXT(verdicts[e->verdict]), "whether it is identified, or why not",             \
     .column = {"verdict"}, .label = {""})                                                          \
   X("linear_low", "", IF(is_skewed(e), NUMBER(e->linear_low)),                                     \

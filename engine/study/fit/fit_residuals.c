@@ -12,14 +12,14 @@
 /* Runs are made by a method that controls its error, within this tolerance; derivatives need that. */
 static const double TOLERANCE = STRUT_FIT_EXACT;
 
+/* How often a case computes its model, at most, for each parameter and once more. */
+enum { BUDGET = 400 };
+
 /* Steps of differences, and where the method ends, in parts of a parameter's range. */
 static const double STEP = 1e-4, NEAR = 1e-6;
 
-/*
- * Where a motion is looked at between two times, which no vibration hides from, and which part of the squared steps from
- * time to time it may be off the line there: one of 2.3 times a period is.
- */
-static const double BETWEEN = 0.382, COARSE = 0.15;
+/* Where a motion is looked at between two times, which no vibration hides from. */
+static const double BETWEEN = 0.382;
 
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
@@ -372,6 +372,8 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   const strut_fit_layout *layout = one->layout;
   const strut_study_fit *fit = layout->fit;
   if (one->known && has_same_runs(layout, one->latest, parameters)) return true;
+  if (one->evaluations >= one->budget * (int64_t)(layout->parameters + 1)) one->spent = true;
+  if (one->spent) return one->known = false;
   one->evaluations++;
   strut_study_value *values = strut_allocate(layout->plan->axis_columns + 1, sizeof *values);
   one->known = values != NULL;
@@ -419,8 +421,8 @@ void strut_fit_align_all(const strut_fit_case *one, const double *parameters, do
   }
 }
 
-/* Does a motion leave the lines between its numbers by much of the way from one to the next, and by more than the noise? */
-static bool is_coarse(const strut_fit_match *match, const double *at, const double *between) {
+/* By how much a motion leaves the lines between its numbers; 0: by no more than the noise. */
+static double coarseness_of(const strut_fit_match *match, const double *at, const double *between) {
   double missed = 0.0, steps = 0.0, noise = 0.0;
   for (size_t s = 0; s < match->series_count; s++) {
     const double *x = at + match->series[s].first, *y = between + match->series[s].first;
@@ -430,17 +432,20 @@ static bool is_coarse(const strut_fit_match *match, const double *at, const doub
       noise += match->noise * match->noise;
     }
   }
-  return match->kind == STRUT_FIT_MOTION && missed > fmax(COARSE * steps, noise);
+  return match->kind == STRUT_FIT_MOTION && missed > noise ? missed / steps : 0.0;
 }
 
 const strut_fit_match *strut_fit_find_coarse(strut_fit_case *one, const double *parameters,
-                                             const double *at) {
+                                             const double *at, double *coarseness) {
   const strut_study_fit *fit = one->layout->fit;
   const strut_fit_match *coarse = NULL;
+  *coarseness = 0.0;
   one->between = BETWEEN, one->known = false;
   if (predict(one, parameters)) strut_fit_align_all(one, parameters, one->buffer);
-  for (size_t m = 0; m < fit->match_count && one->known && !coarse; m++)
-    if (is_coarse(&fit->matches[m], at, one->buffer)) coarse = &fit->matches[m];
+  for (size_t m = 0; m < fit->match_count && one->known; m++) {
+    double own = coarseness_of(&fit->matches[m], at, one->buffer);
+    if (own > *coarseness) *coarseness = own, coarse = &fit->matches[m];
+  }
   one->between = 0.0, one->known = false;
   return coarse;
 }
@@ -513,7 +518,7 @@ strut_least_squares strut_fit_problem(strut_fit_case *one) {
 
 bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) {
   size_t most = layout->count;
-  *one = (strut_fit_case){.layout = layout};
+  *one = (strut_fit_case){.layout = layout, .budget = BUDGET};
   for (size_t m = 0; m < layout->fit->match_count; m++) {
     size_t count = layout->fit->matches[m].count;
     size_t room = 3 * (count + 1) * (1 + layout->fit->matches[m].series_count);
@@ -525,5 +530,3 @@ bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) 
   if (fine) strut_fit_choose(one, 1.0, -1);
   return fine;
 }
-
-void strut_fit_case_free(strut_fit_case *one) { strut_arena_free(&one->arena); }

@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed", "none"};
+const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed", "none",
+                                                         "not finished"};
 
 /* Gradients, and changes of the sum, at which the method ends, relative. */
 static const double FLAT = 1e-15;
@@ -44,8 +45,6 @@ typedef struct solver {
   double *known; /* (count) at the latest point that had some: where the matrix is asked for */
   double drawn;  /* residuals per unit outside of the box */
   bool lost;     /* residuals end there while they get smaller */
-  bool changed;  /* others are stopped than at the matrix before */
-  bool stopped[STRUT_LEAST_SQUARES_MOST]; /* (free) */
 } solver;
 
 static bool is_held(const solver *self, size_t i) { return (int32_t)i == self->problem->held; }
@@ -143,8 +142,7 @@ static int find_jacobian(const gsl_vector *x, void *context, gsl_matrix *jacobia
     for (size_t j = 0; j < count && !stopped; j++)
       gsl_matrix_set(jacobian, j, k, self->derivative[j]);
     if (stopped) gsl_matrix_set(jacobian, count + k, k, self->drawn);
-    self->changed = self->changed || stopped != self->stopped[k];
-    self->stopped[k++] = stopped;
+    k++;
   }
   return GSL_SUCCESS;
 }
@@ -191,18 +189,13 @@ static bool is_least(const solver *self, const gsl_multifit_nlinear_workspace *w
 }
 
 /*
- * Goes on until steps are short, or none makes the sum smaller; and on where parameters were stopped or let go since.
- * False: these ended, or there were too many, while the sum should still fall.
+ * Goes on until steps are short, or none makes the sum smaller. False: these ended, or there were too many, while the sum
+ * should still fall.
  */
-static bool converge(solver *self, gsl_multifit_nlinear_workspace *workspace, double first) {
-  size_t most = (size_t)self->problem->most_steps, steps = 0;
-  int status = GSL_EMAXITER, info = 0;
-  do {
-    self->changed = false;
-    status = gsl_multifit_nlinear_driver(most - steps, self->problem->near, FLAT, FLAT, NULL, NULL,
-                                         &info, workspace);
-    steps = gsl_multifit_nlinear_niter(workspace);
-  } while (self->changed && steps < most);
+static bool converge(const solver *self, gsl_multifit_nlinear_workspace *workspace, double first) {
+  int info = 0;
+  int status = gsl_multifit_nlinear_driver((size_t)self->problem->most_steps, self->problem->near,
+                                           FLAT, FLAT, NULL, NULL, &info, workspace);
   return is_least(self, workspace, first, status ? MUCH : 1.0);
 }
 

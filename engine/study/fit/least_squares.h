@@ -36,6 +36,7 @@ typedef enum strut_fit_end {
   STRUT_FIT_STUCK,  /* too many steps, or residuals end where they get smaller */
   STRUT_FIT_FAILED, /* there are no residuals where it begins */
   STRUT_FIT_NONE,   /* nothing was to be solved */
+  STRUT_FIT_SPENT,  /* it took more evaluations than it may */
   STRUT_FIT_END_COUNT
 } strut_fit_end;
 

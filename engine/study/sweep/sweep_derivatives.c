@@ -75,23 +75,29 @@ static bool add_parameter(strut_sweep_plan *plan, const char *name, const char *
   return by->name && by->unit;
 }
 
+/* Can the scene at these values have this number of a parameter? If nothing uses it, it cannot. */
+static strut_status try_number(const strut_sweep_plan *plan, const strut_study_value *values,
+                               const strut_derived_by *by, double number, strut_error *why) {
+  strut_setup setup;
+  strut_status status =
+      plan->scenes.vary(plan->scenes.context, values, by, 1, &number, &setup, why);
+  if (!status) strut_setup_free(&setup);
+  return status;
+}
+
 /* Fails unless the scene of the first point has the parameter and uses it. */
 static strut_status check_parameter(const strut_sweep_plan *plan, const strut_setup *setup,
                                     const strut_study_value *values, const strut_derived_by *by,
                                     strut_error *error) {
   const strut_parameter *parameter = strut_parameter_named(&setup->scene, by->name);
-  strut_setup same;
   strut_error why = {0};
   if (!parameter)
     return strut_fail(error, STRUT_USAGE, "derivatives: the model has no parameter '%.60s'",
                       by->name);
-  strut_status status =
-      plan->scenes.vary(plan->scenes.context, values, by, 1, &parameter->value, &same, &why);
-  if (status)
-    return strut_fail(error, status == STRUT_NO_MEMORY ? status : STRUT_USAGE,
-                      "derivatives by '%.60s': %s", by->name, why.message);
-  strut_setup_free(&same);
-  return STRUT_OK;
+  strut_status status = try_number(plan, values, by, parameter->value, &why);
+  return status ? strut_fail(error, status == STRUT_NO_MEMORY ? status : STRUT_USAGE,
+                             "derivatives by '%.60s': %s", by->name, why.message)
+                : STRUT_OK;
 }
 
 strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_setup *setup,
@@ -195,36 +201,6 @@ static double scale_of(const strut_sweep_plan *plan, const char *name) {
   return 0.0;
 }
 
-/*
- * A parameter of the job's scene; where a scene cannot have a little less or more of it, that is its range. Low is high
- * where it can have neither, with the reason; *used: unless nothing in this scene uses it.
- */
-static strut_derivatives_parameter parameter_of(const derivation *self, const strut_derived_by *by,
-                                                bool *used, strut_error *error) {
-  const strut_sweep_plan *plan = self->worker->plan;
-  const strut_parameter *parameter = strut_parameter_named(&self->job->setup.scene, by->name);
-  const double value = parameter ? parameter->value : (double)NAN;
-  double limit[2] = {-INFINITY, INFINITY};
-  *used = true;
-  for (int side = 0; side < 3; side++) { /* below, above, and if there is neither, here */
-    const double away = 1e-4 * (value != 0.0 ? fabs(value) : 1.0);
-    const double beside = value + (side == 0 ? -away : side == 1 ? away : 0.0);
-    strut_setup setup;
-    strut_error why = {0};
-    if (side == 2 && limit[0] < limit[1]) break;
-    strut_status status = plan->scenes.vary(plan->scenes.context, self->job->cells.values, by, 1,
-                                            &beside, &setup, &why);
-    if (!status) strut_setup_free(&setup);
-    if (status && side < 2) limit[side] = value, *error = why;
-    if (status && side == 2) *used = false;
-  }
-  const double scale = scale_of(plan, by->name);
-  return (strut_derivatives_parameter){.value = value,
-                                       .low = limit[0],
-                                       .high = limit[1],
-                                       .scale = scale > 0.0 ? fmax(fabs(value), scale) : 0.0};
-}
-
 /* Warns that derivatives are missing: by a parameter, or, where that is NULL, some of them. */
 static void warn(strut_sweep_job *job, const char *by, const char *why) {
   strut_sweep_warn(job, "derivatives", "there are no derivatives%s%.60s%s: %.400s",
@@ -232,23 +208,36 @@ static void warn(strut_sweep_job *job, const char *by, const char *why) {
                    why);
 }
 
-/* Lists what the scene of the job has scenes beside it for; derivatives by others are not known, or 0. */
+/*
+ * Lists the parameters of the job's scene that can be a little less or more, which bounds their range; of others
+ * derivatives are not known, or 0 where nothing in this scene uses them.
+ */
 static void choose_parameters(derivation *self, strut_sweep_job *job, size_t count,
                               strut_derivatives_parameter *parameters, size_t *place) {
   const strut_sweep_plan *plan = self->worker->plan;
+  const strut_study_value *values = job->cells.values;
   for (size_t i = 0; i < count; i++) {
-    strut_error why = {0};
-    bool used;
-    parameters[self->by_count] = parameter_of(self, &plan->by[i], &used, &why);
-    if (parameters[self->by_count].low < parameters[self->by_count].high) {
+    const strut_derived_by *by = &plan->by[i];
+    const strut_parameter *parameter = strut_parameter_named(&job->setup.scene, by->name);
+    const double value = parameter ? parameter->value : (double)NAN,
+                 scale = scale_of(plan, by->name);
+    const double away = 1e-4 * (value != 0.0 ? fabs(value) : 1.0);
+    strut_error why = {0}, unused;
+    bool below = !try_number(plan, values, by, value - away, &why);
+    bool above = !try_number(plan, values, by, value + away, &why);
+    if (below || above) {
+      parameters[self->by_count] =
+          (strut_derivatives_parameter){value, below ? -HUGE_VAL : value, above ? HUGE_VAL : value,
+                                        scale > 0.0 ? fmax(fabs(value), scale) : 0.0};
       place[self->by_count] = i;
-      self->by[self->by_count++] = plan->by[i];
-      continue;
+      self->by[self->by_count++] = *by;
+    } else if (!try_number(plan, values, by, value, &unused)) {
+      warn(job, by->name, why.message);
+    } else {
+      for (size_t j = 0; j < plan->derived_count; j++)
+        job->derivatives[j * plan->by_count + i] =
+            (strut_derivative){0.0, 0.0, STRUT_DERIVATIVE_THERE};
     }
-    for (size_t j = 0; j < plan->derived_count && !used; j++)
-      job->derivatives[j * plan->by_count + i] =
-          (strut_derivative){0.0, 0.0, STRUT_DERIVATIVE_THERE};
-    if (used) warn(job, plan->by[i].name, why.message);
   }
 }
 

@@ -189,38 +189,37 @@ static const char *axis_in(const char *name) {
   return NULL;
 }
 
-/* The numbers of the column if it is a coordinate, of x (0) or y, that is a length; else NULL. */
-static double *coordinate(const loader *self, size_t i, int *axis) {
-  const strut_data_column *column = &self->columns[i];
-  const char *at = axis_in(column->name);
-  bool length = column->unit && strut_dimension_equal(column->dimension, STRUT_DIM_LENGTH);
-  if (!at || !length) return NULL;
-  *axis = *at == 'y' || *at == 'Y';
-  return (double *)(uintptr_t)column->values;
+/* A column of a length whose name has an axis. */
+static bool is_coordinate(const strut_data_column *column) {
+  return axis_in(column->name) && column->unit &&
+         strut_dimension_equal(column->dimension, STRUT_DIM_LENGTH);
 }
 
-/* The numbers of the column whose name has y where that of column i has x, or x where it has y; or NULL. */
-static double *partner_of(const loader *self, size_t i, int axis) {
+/* The numbers of the coordinate whose name has y where that of column i has x, or x where it has y; or NULL. */
+static double *partner_of(const loader *self, size_t i) {
   const char *name = self->columns[i].name;
-  size_t at = (size_t)(axis_in(name) - name);
-  for (size_t k = 0; k < self->table->column_count; k++) {
-    const char *other = self->columns[k].name;
-    if (strlen(other) == strlen(name) && strncmp(other, name, at) == 0 &&
-        other[at] == name[at] + 1 - 2 * axis && strcmp(other + at + 1, name + at + 1) == 0)
-      return coordinate(self, k, &axis);
-  }
-  return NULL;
+  size_t count = self->table->column_count;
+  char *other = strut_arena_text(&self->reader->scratch, name, strlen(name));
+  if (!other) self->reader->out_of_memory = true;
+  if (!other) return NULL;
+  other[axis_in(name) - name] ^= 'x' ^ 'y';
+  size_t k = strut_row_find(STRUT_NAMED(self->columns, count), other);
+  bool found = k < count && is_coordinate(&self->columns[k]);
+  return found ? (double *)(uintptr_t)self->columns[k].values : NULL;
 }
 
 /* Scales or flips coordinates, turns pairs of them, and shifts them. */
-static bool move(loader *self, const double factor[2]) {
+static bool move(loader *self) {
   const strut_data_table *table = self->table;
   bool turns = table->rotate != 0.0;
-  int axis;
-  double s, c;
+  double s, c, factor[2];
   strut_sincos_turns(table->rotate / STRUT_TAU, &s, &c);
+  for (int k = 0; k < 2; k++) factor[k] = table->flip >> k & 1u ? -table->scale : table->scale;
   for (size_t i = 0; i < table->column_count; i++) {
-    double *x = coordinate(self, i, &axis), *y = x && turns ? partner_of(self, i, axis) : NULL;
+    if (!is_coordinate(&self->columns[i])) continue;
+    int axis = *axis_in(self->columns[i].name) % 2; /* of "x" and "X" 0 */
+    double *x = (double *)(uintptr_t)self->columns[i].values,
+           *y = turns ? partner_of(self, i) : NULL;
     if (x && turns && !y)
       return strut_report_error(self->reader, value_of(self, STRUT_KEY_DATA_ROTATE)->place,
                                 "column '%s' has no column of %c beside it to be turned with",
@@ -235,17 +234,11 @@ static bool move(loader *self, const double factor[2]) {
   return true;
 }
 
-/* A key that moves coordinates needs some. */
-static bool require_coordinates(loader *self) {
+/* Keys that move coordinates have none to move; `near`: a column that might be one, or NULL. */
+static bool refuse_moves(loader *self, const char *near) {
   static const int keys[] = {STRUT_KEY_DATA_FLIP, STRUT_KEY_DATA_SCALE, STRUT_KEY_DATA_ROTATE,
                              STRUT_KEY_DATA_SHIFT};
-  const char *near = NULL;
-  int axis;
   bool fine = true;
-  for (size_t i = 0; i < self->table->column_count; i++) {
-    if (coordinate(self, i, &axis)) return true;
-    if (!near && axis_in(self->columns[i].name)) near = self->columns[i].name;
-  }
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
     const strut_slot *slot = strut_slot_of(&self->fields, keys[i]);
     if (slot->state != STRUT_GIVEN) continue;
@@ -263,21 +256,21 @@ static bool require_coordinates(loader *self) {
 /* Flips, scales, turns and shifts coordinates. False: that was reported. */
 static bool place_coordinates(loader *self) {
   const strut_data_table *table = self->table;
-  double scale[2];
-  int axis;
-  for (size_t i = 0; table->scale_unit && i < table->column_count; i++) {
+  const char *near = NULL;
+  bool any = false;
+  for (size_t i = 0; i < table->column_count; i++) {
     strut_data_column *column = &self->columns[i];
-    if (coordinate(self, i, &axis))
+    if (!axis_in(column->name)) continue;
+    if (table->scale_unit && is_coordinate(column))
       return strut_report_error(self->reader, value_of(self, STRUT_KEY_DATA_SCALE)->place,
                                 "column '%s' has a unit, expected a 'scale' without one for it",
                                 strut_sanitised_text(self->reader, column->name));
-    if (!axis_in(column->name) || column->unit) continue;
-    column->unit = "m";
-    column->dimension = STRUT_DIM_LENGTH;
+    if (table->scale_unit && !column->unit)
+      column->unit = "m", column->dimension = STRUT_DIM_LENGTH;
+    any = any || is_coordinate(column);
+    if (!near) near = column->name;
   }
-  if (!require_coordinates(self)) return false;
-  for (int k = 0; k < 2; k++) scale[k] = table->flip >> k & 1u ? -table->scale : table->scale;
-  return move(self, scale);
+  return any ? move(self) : refuse_moves(self, near);
 }
 
 /* ---- weights ---- */

@@ -20,6 +20,7 @@ typedef struct reading {
   strut_fields fields;           /* of its own keys */
   const strut_tree *rest;        /* a mapping of what is compared */
   const strut_data_table *table; /* of all its numbers; NULL: they are single ones */
+  double own;                    /* duration of the model's own run [s]; 0: not known */
 } reading;
 
 /* ---- parameters ---- */
@@ -97,7 +98,8 @@ static const strut_data_column *read_column(reading *self, const strut_tree *val
 }
 
 /* The column behind one of the match's own keys, without gaps. */
-static const double *read_at(reading *self, int key, strut_dimension dimension, bool ascending) {
+static const strut_data_column *read_at(reading *self, int key, strut_dimension dimension,
+                                        bool ascending) {
   const strut_slot *slot = strut_slot_of(&self->fields, key);
   const strut_data_column *column =
       slot->state == STRUT_GIVEN ? read_column(self, slot->value, slot->key->text, &dimension)
@@ -111,7 +113,31 @@ static const double *read_at(reading *self, int key, strut_dimension dimension, 
            : self->to->count < 2                               ? "a motion needs two times or more"
                                                                : NULL;
   if (flaw) strut_refuse_data(self->reader, slot->value, self->table, column, i - 1, flaw);
-  return column && !flaw ? column->values : NULL;
+  if (flaw || !column) return NULL;
+  self->to->at = column->values;
+  return column;
+}
+
+/* Times in another unit than that of their column make runs that are much longer than the model's own, or do not end. */
+static void check_duration(reading *self, const strut_data_column *times) {
+  char message[200];
+  const strut_fit_match *to = self->to;
+  const strut_tree *value = strut_slot_of(&self->fields, STRUT_KEY_MATCH_TIME)->value;
+  double last = to->at[to->count - 1] - (to->align.delay ? to->at[0] : 0.0);
+  if (to->at[0] < 0.0 && !to->align.delay)
+    strut_report_error(self->reader, value->place,
+                       "the times of match '%s' begin before 0, where the run starts: let 'align' "
+                       "have 'delay: free'",
+                       to->name);
+  if (!(last > USUAL * self->own && self->own > 0.0)) return;
+  snprintf(message, sizeof message,
+           "the runs of match '%.40s' would last %.4g s, %.3g times the model's own of %.4g s: "
+           "check the unit of this column",
+           to->name, last, last / self->own, self->own);
+  if (last > MOST * self->own)
+    strut_refuse_data(self->reader, value, self->table, times, to->count - 1, message);
+  else
+    strut_note(self->reader->diagnostics, value->place, "%s", message);
 }
 
 static void read_noise(reading *self) {
@@ -240,25 +266,19 @@ static void choose_kind(reading *self) {
 
 /* The times or displacements of a match. False: what should be there is not. */
 static bool read_axis(reading *self) {
-  strut_fit_match *to = self->to;
-  if (to->kind == STRUT_FIT_CURVE)
-    to->at = read_at(self, STRUT_KEY_MATCH_DISPLACEMENT, STRUT_DIM_LENGTH, false);
-  if (to->kind == STRUT_FIT_MOTION)
-    to->at = read_at(self, STRUT_KEY_MATCH_TIME, STRUT_DIM_TIME, true);
-  if (to->kind == STRUT_FIT_MOTION && to->at && to->at[0] < 0.0 && !to->align.delay)
-    return strut_report_error(
-        self->reader, strut_slot_of(&self->fields, STRUT_KEY_MATCH_TIME)->value->place,
-        "the times of match '%s' begin before 0, where the run starts: let 'align' have 'delay: "
-        "free'",
-        to->name);
-  return to->at || to->kind == STRUT_FIT_TABLE || to->kind == STRUT_FIT_REST;
+  strut_fit_kind kind = self->to->kind;
+  const strut_data_column *times = NULL;
+  if (kind == STRUT_FIT_CURVE) read_at(self, STRUT_KEY_MATCH_DISPLACEMENT, STRUT_DIM_LENGTH, false);
+  if (kind == STRUT_FIT_MOTION) times = read_at(self, STRUT_KEY_MATCH_TIME, STRUT_DIM_TIME, true);
+  if (times) check_duration(self, times);
+  return self->to->at || kind == STRUT_FIT_TABLE || kind == STRUT_FIT_REST;
 }
 
 /* Returns the mapping of what it sets, or NULL. */
-static const strut_tree *read_match(strut_study_reader *study, const strut_tree *key,
+static const strut_tree *read_match(strut_study_reader *study, const strut_tree *key, double own,
                                     strut_fit_match *to) {
   strut_reader *r = study->reader;
-  reading self = {.study = study, .reader = r, .to = to, .owner = {"match", key->text}};
+  reading self = {.study = study, .reader = r, .to = to, .owner = {"match", key->text}, .own = own};
   strut_read_name(r, key, "match");
   *to = (strut_fit_match){.name = key->text};
   divide(&self, key->next);
@@ -391,39 +411,18 @@ static void refuse_twice(strut_study_reader *reader, const strut_fit_match *a,
     }
 }
 
-/* Times in another unit than that of their column make runs that are much longer than the model's own, or do not end. */
-static void check_durations(strut_study_reader *study, const strut_tree *matches,
-                            const strut_study_fit *fit) {
+/* How long the model's own run lasts [s]; 0: that is not known. */
+static double own_duration(const strut_study_file *file) {
   strut_setup setup;
   strut_diagnostics unused = {0};
-  strut_reader *reader = study->reader;
-  char message[200];
-  const strut_study_file *file = study->file;
-  bool known = strut_scene_source_read(file->sources[0], file->settings, file->setting_count,
-                                       STRUT_FOR_RUN_STEP_LATER, &unused, &setup) == STRUT_OK;
-  strut_diagnostics_free(&unused);
-  if (!known) return;
-  double own = strut_experiment_span(&setup.experiment, &setup.scene).duration;
-  const strut_tree *key = matches->first;
-  for (size_t m = 0; m < fit->match_count; m++, key = key->next->next) {
-    const strut_fit_match *match = &fit->matches[m];
-    double last = match->kind == STRUT_FIT_MOTION ? match->at[match->count - 1] : 0.0;
-    if (match->align.delay) last -= match->at[0];
-    if (!(last > USUAL * own && own > 0.0)) continue;
-    const strut_tree *value = strut_tree_find(key->next, "time", NULL);
-    const strut_data_table *table;
-    const strut_data_column *column =
-        strut_data_find(reader->tables, reader->table_count, value->text, &table);
-    snprintf(message, sizeof message,
-             "the runs of match '%.40s' would last %.4g s, %.3g times the model's own of %.4g s: "
-             "check the unit of this column",
-             match->name, last, last / own, own);
-    if (last > MOST * own)
-      strut_refuse_data(reader, value, table, column, match->count - 1, message);
-    else
-      strut_note(reader->diagnostics, value->place, "%s", message);
+  double duration = 0.0;
+  if (strut_scene_source_read(file->sources[0], file->settings, file->setting_count,
+                              STRUT_FOR_RUN_STEP_LATER, &unused, &setup) == STRUT_OK) {
+    duration = strut_experiment_span(&setup.experiment, &setup.scene).duration;
+    strut_setup_free(&setup);
   }
-  strut_setup_free(&setup);
+  strut_diagnostics_free(&unused);
+  return duration;
 }
 
 bool strut_study_fit_computes(const strut_study_fit *fit, const char *words) {
@@ -476,9 +475,10 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   fit->matches = strut_study_allocate(reader, count, sizeof *fit->matches);
   if (!fit->matches) return;
   const strut_tree *sets[STRUT_FIT_MOST_MATCHES];
+  double own = own_duration(reader->file);
   for (const strut_tree *key = matches->value->first; key;
        key = key->next->next, fit->match_count++)
-    sets[fit->match_count] = read_match(reader, key, &fit->matches[fit->match_count]);
+    sets[fit->match_count] = read_match(reader, key, own, &fit->matches[fit->match_count]);
   require_noise(reader, matches->value, fit);
   for (size_t m = 0; m < fit->match_count; m++)
     for (size_t k = 0; k <= m; k++) refuse_twice(reader, &fit->matches[m], &fit->matches[k]);
@@ -487,7 +487,5 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   add_rows(reader, fit, over->value->count, rows);
   read_over(reader, over, fit);
   read_sets(reader, sets, fit);
-  if (reader->reader->failed) return;
-  study->fit = fit;
-  check_durations(reader, matches->value, fit);
+  if (!reader->reader->failed) study->fit = fit;
 }

@@ -136,7 +136,7 @@ static strut_status report_fit(const strut_study_job *job, const void *of, const
   return STRUT_INACCURATE;
 }
 
-static void free_fit(void *result) { strut_fit_result_free(result); }
+static void free_fit(void *result) { strut_arena_free(&((strut_fit_result *)result)->arena); }
 
 static const strut_study_form fit_form = {sizeof(strut_fit_result), run_fit, write_fit, report_fit,
                                           free_fit};
