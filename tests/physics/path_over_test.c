@@ -274,7 +274,8 @@ TEST(memory) {
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   const strut_path_options all[] = {
       {.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.05, .at = "start"},
-      {.over = STRUT_PATH_OVER_COORDINATE, .index = 0, .from = 0.001, .until = -0.05}};
+      {.over = STRUT_PATH_OVER_COORDINATE, .index = 0, .from = 0.001, .until = -0.05},
+      {.until = 100}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     REFUSE_EACH(n, status, 10) {
       OWN(strut_path) path = {0};

@@ -134,13 +134,3 @@ TEST(refusals) {
   setup.scene.load_count = 0;
   refuse(&setup, NULL, "no constant load");
 }
-
-TEST(memory) {
-  OWN(strut_setup) setup = pressed_arch(1, 0.3, 1000);
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  strut_path_options options = {.until = 100};
-  REFUSE_EACH(n, status, 10) {
-    OWN(strut_path) path = {0};
-    status = refused(n, strut_path_follow(model, &setup.experiment, &options, &path, NULL));
-  }
-}

@@ -170,6 +170,20 @@ TEST(an_angle_beyond_a_turn) {
   assert_string_equal(get(&r, "spin")->unit, "rad/s");
 }
 
+/* What falls exponentially is not zero up to rounding, however large its exponent or denominator becomes. */
+TEST(large_exponents) {
+  OWN(model_run) r = run_text(
+      "nodes: {a: {position: [0, 0], mass: 1 kg}}\n"
+      "initial: {velocity: [1, 0]}\n"
+      "solver: {integrator: rk4, step: 1 ms}\n"
+      "run: {duration: 10 s, measure: {quantities: {decay: exp(-5*time/(1 s)), pole: (1 + a.x/(1 "
+      "m))^-4,\n"
+      "  bell: {of: \"exp(-((a.x - 5 m)/(10 mm))^2)\", take: max}}}}\n");
+  assert_all_near(1e-6, value(&r, "decay"), 0.02, value(&r, "bell"), 1);
+  assert_near(value(&r, "pole"), 1 / 30.0, 1e-4);
+  assert_false(get(&r, "decay")->zero || get(&r, "bell")->zero || get(&r, "pole")->zero);
+}
+
 /* Free fall above a slope of 30 degrees, over the last second of two. */
 TEST(a_falling_mass) {
   OWN(model_run) r = run_text(

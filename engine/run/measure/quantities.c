@@ -81,23 +81,46 @@ static double propagate_uncertainty(strut_operation operation, double a, double 
   return da + db;
 }
 
+/* Between which values a result of this size lies: at the corners where it rises or falls in each operand. */
+static void bound_result(strut_operation operation, strut_magnitude a, strut_magnitude b,
+                         strut_magnitude *result) {
+  strut_sensitivity kind = sensitivities[operation];
+  bool corners = operation == STRUT_OPERATION_ADD || operation == STRUT_OPERATION_SUBTRACT ||
+                 operation == STRUT_OPERATION_NEGATE || kind == STRUT_SENSITIVITY_PRODUCT ||
+                 kind == STRUT_SENSITIVITY_EXPONENTIAL ||
+                 (kind == STRUT_SENSITIVITY_QUOTIENT && b.low * b.high > 0.0);
+  bool even = operation == STRUT_OPERATION_POWER && fmod(b.low, 2.0) == 0.0 && b.low == b.high;
+  result->low = even ? 0.0 : -result->size, result->high = result->size;
+  for (int k = 0; k < 4 && corners; k++) {
+    double value = strut_operation_apply(operation, k & 1 ? a.low : a.high, k & 2 ? b.low : b.high);
+    result->low = k ? fmin(result->low, value) : value;
+    result->high = k ? fmax(result->high, value) : value;
+  }
+}
+
 static strut_magnitude combine_magnitudes(strut_operation operation, strut_magnitude a,
                                           strut_magnitude b) {
   double size = 1.0;
   switch (sensitivities[operation]) {
+    case STRUT_SENSITIVITY_EXPONENTIAL: a.size = a.high; /* fall through */
     case STRUT_SENSITIVITY_PRODUCT:
     case STRUT_SENSITIVITY_QUOTIENT:
-    case STRUT_SENSITIVITY_POWER:
     case STRUT_SENSITIVITY_ROOT:
-    case STRUT_SENSITIVITY_EXPONENTIAL:
       size = fabs(strut_operation_apply(operation, a.size, b.size));
+      break;
+    case STRUT_SENSITIVITY_POWER:
+      size = fabs(strut_operation_apply(operation, a.size, b.high));
       break;
     case STRUT_SENSITIVITY_SUM: size = fmax(a.size, b.size); break;
     case STRUT_SENSITIVITY_LOGARITHM:
     case STRUT_SENSITIVITY_BOUNDED: break;
   }
-  return (strut_magnitude){size, propagate_uncertainty(operation, a.size, b.size, a.span, b.span),
-                           propagate_uncertainty(operation, a.size, b.size, a.noise, b.noise)};
+  strut_magnitude result = {
+      .size = size,
+      .span = propagate_uncertainty(operation, a.size, b.size, a.span, b.span),
+      .noise = propagate_uncertainty(operation, a.size, b.size, a.noise, b.noise)};
+  bound_result(operation, a, b, &result);
+  return result;
 }
 
 strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *definition,
@@ -107,7 +130,8 @@ strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition
   for (size_t i = 0; i < definition->length; i++) {
     const strut_instruction *instruction = &definition->program[i];
     if (instruction->operation == STRUT_OPERATION_NUMBER) {
-      stack[top++] = (strut_magnitude){.size = fabs(instruction->number)};
+      double number = instruction->number;
+      stack[top++] = (strut_magnitude){.size = fabs(number), .low = number, .high = number};
     } else if (instruction->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
@@ -595,6 +619,8 @@ void strut_quantities_finish(strut_quantities *quantities, strut_summary *summar
   const strut_columns *columns = &quantities->columns;
   for (size_t i = 0; i < columns->count; i++) /* over the window */
     quantities->sizes[i] = (strut_magnitude){.size = columns->largest[i],
+                                             .low = columns->least[i],
+                                             .high = columns->most[i],
                                              .span = strut_columns_span(columns, i),
                                              .noise = strut_columns_noise(columns, i)};
   for (size_t i = 0; i < quantities->count && i < summary->measured_count; i++)

@@ -62,11 +62,12 @@ static inline uint64_t strut_gather_branch(uint64_t all, uint64_t one) {
   return (all ^ one) * 1099511628211u;
 }
 
-/** Size of a term, and two uncertainties that propagate alike. */
+/** Size of a term, its range, and two uncertainties that propagate alike. */
 typedef struct strut_magnitude {
-  double size;  /* largest absolute value of the terms */
-  double span;  /* range */
-  double noise; /* rounding error */
+  double size;      /* largest absolute value of the terms */
+  double low, high; /* between which its values lie */
+  double span;      /* range */
+  double noise;     /* rounding error */
 } strut_magnitude;
 
 /** Evaluates the program on magnitudes: sums take the larger size and add range and rounding. */
