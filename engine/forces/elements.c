@@ -153,7 +153,8 @@ static inline exertion exert(const strut_element *element, const strut_state *st
 
 static inline void add_powers(const strut_element *element, const strut_state *state,
                               const exertion *self, double rest_rate) {
-  double drive = (self->excess - self->force) * rest_rate,
+  bool cell = strut_law_is_of_cells(element->law); /* its drive is all excess */
+  double drive = (cell ? self->excess : self->excess - self->force) * rest_rate,
          lost = (self->force - self->elastic) * self->own_rate;
   bool load = element->role == STRUT_ELEMENT_LOAD;
   if (load) drive = -self->force * self->own_rate;

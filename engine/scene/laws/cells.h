@@ -30,7 +30,7 @@ static inline strut_law_response strut_gas_response(const strut_law_numbers *n, 
   double energy = gas.energy - beyond * (gas.pressure - 0.5 * gas.slope * beyond);
   double force = n->outside - e0 * pressure;
   return (strut_law_response){force, e0 * energy + n->outside * (e - n->area), e0 * gas.slope,
-                              energy + force};
+                              energy};
 }
 
 /** A given pressure e0 [N/m], which pushes an area e outwards. */
@@ -38,7 +38,7 @@ static inline strut_law_response strut_law_pressure(const strut_law_numbers *n, 
                                                     int piece) {
   double grown = e - n->area;
   (void)piece;
-  return (strut_law_response){-e0, -e0 * grown, 0.0, -grown - e0};
+  return (strut_law_response){-e0, -e0 * grown, 0.0, -grown};
 }
 STRUT_LAW_WITHOUT_KINKS(pressure)
 

@@ -55,7 +55,7 @@ typedef struct strut_law_numbers {
 /** What a law gives at a strain: force, energy from the natural strain on, and slope d force / d e. */
 typedef struct strut_law_response {
   double force, energy, slope;
-  double excess; /* d energy / d e0 + force: 0 of a law of e - e0 alone */
+  double excess; /* d energy / d e0, + force but of cells: 0 of a law of e - e0 alone */
 } strut_law_response;
 
 /* Beyond this a difference of functions loses no more digits than its series has terms. */
