@@ -175,7 +175,7 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
   strut_vibration *v = *vibration = strut_allocate(1, sizeof *v);
   if (!v) return strut_no_memory(error, "");
   v->model = model;
-  strut_status status = strut_potential_create(model, held, true, &v->shape, error);
+  strut_status status = strut_potential_create(model, held, true, &v->arena, &v->shape, error);
   if (status == STRUT_OK) v->n = v->shape->n;
   if (status == STRUT_OK && !allocate(v)) status = strut_no_memory(error, "");
   if (status != STRUT_OK) {
@@ -194,7 +194,6 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
 
 void strut_vibration_free(strut_vibration *vibration) {
   if (!vibration) return;
-  strut_potential_free(vibration->shape);
   strut_arena_free(&vibration->arena);
   strut_release(vibration);
 }

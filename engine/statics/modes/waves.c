@@ -191,9 +191,9 @@ static strut_status settle_cell(const lattice_cell *cell, const strut_experiment
   strut_minimiser *minimiser = NULL;
   strut_arena scratch = {0};
   double *gradient = strut_arena_allocate(&scratch, (size_t)cell->n, sizeof *gradient);
-  strut_status status =
-      gradient ? strut_potential_create_tied(cell->model, cell->row, cell->n, &potential, error)
-               : strut_no_memory(error, "");
+  strut_status status = gradient ? strut_potential_create_tied(cell->model, cell->row, cell->n,
+                                                               &scratch, &potential, error)
+                                 : strut_no_memory(error, "");
   if (status == STRUT_OK) status = strut_minimiser_create(potential, &scratch, &minimiser, error);
   if (status == STRUT_OK) {
     strut_minimiser_watch(minimiser, experiment->interrupt);
@@ -206,7 +206,6 @@ static strut_status settle_cell(const lattice_cell *cell, const strut_experiment
     if (status == STRUT_OK && !(descent.residual <= MOST_LEFT * descent.rounding))
       status = not_found(cell, gradient, error);
   }
-  strut_potential_free(potential);
   strut_arena_free(&scratch);
   return status;
 }
