@@ -23,15 +23,15 @@ static void sum_forces(strut_potential *potential) {
           fabs(scene->loads[i].moment) / (model->size > 0 ? model->size : 1.0);
 }
 
-static bool make_pattern(strut_potential *potential) {
+static bool make_pattern(strut_potential *potential, strut_arena *arena) {
   const strut_model *model = potential->model;
   size_t most = strut_tangent_entries(model, true);
   strut_arena scratch = {0};
   strut_triplets sum = {0};
-  potential->place = strut_arena_allocate(&potential->arena, most, sizeof *potential->place);
+  potential->place = strut_arena_allocate(arena, most, sizeof *potential->place);
   if (potential->place && strut_triplets_reserve(&sum, most, &scratch)) {
     strut_tangent_add_pattern(model, potential->row_of, true, &sum);
-    potential->pattern = strut_sparse_build(potential->n, &sum, &potential->arena);
+    potential->pattern = strut_sparse_build(potential->n, &sum, arena);
   }
   strut_arena_free(&scratch);
   if (!potential->pattern) return false;
@@ -40,48 +40,38 @@ static bool make_pattern(strut_potential *potential) {
 }
 
 static strut_status create(const strut_model *model, const uint8_t *held, const int32_t *rows,
-                           int32_t n, bool ground, strut_potential **potential,
+                           int32_t n, bool ground, strut_arena *arena, strut_potential **potential,
                            strut_error *error) {
   size_t length = (size_t)model->length;
-  strut_potential *p = *potential = strut_allocate(1, sizeof *p);
-  if (!p) return strut_no_memory(error, "");
+  strut_potential *p = *potential = strut_arena_allocate(arena, 1, sizeof *p);
+  if (!p || !STRUT_ALLOCATE(arena, STRUT_NEW(p->coordinate, length), STRUT_NEW(p->row_of, length),
+                            STRUT_NEW(p->force, length)))
+    return strut_no_memory(error, "");
   p->model = model;
   p->ground = ground;
-  p->coordinate = strut_arena_allocate(&p->arena, length, sizeof *p->coordinate);
-  p->row_of = strut_arena_allocate(&p->arena, length, sizeof *p->row_of);
-  p->force = strut_arena_allocate(&p->arena, length, sizeof *p->force);
-  if (p->coordinate && p->row_of && p->force) {
-    p->n = rows ? n : strut_number_free(model, held, p->row_of, p->coordinate);
-    for (int32_t at = model->length - 1; at >= 0 && rows; at--)
-      if ((p->row_of[at] = rows[at]) >= 0) p->coordinate[rows[at]] = at;
-    sum_forces(p);
-    if (make_pattern(p)) return STRUT_OK;
-  }
-  strut_potential_free(p);
-  *potential = NULL;
-  return strut_no_memory(error, "");
+  p->n = rows ? n : strut_number_free(model, held, p->row_of, p->coordinate);
+  for (int32_t at = model->length - 1; at >= 0 && rows; at--)
+    if ((p->row_of[at] = rows[at]) >= 0) p->coordinate[rows[at]] = at;
+  sum_forces(p);
+  return make_pattern(p, arena) ? STRUT_OK : strut_no_memory(error, "");
 }
 
 strut_status strut_potential_create(const strut_model *model, const uint8_t *held, bool ground,
-                                    strut_potential **potential, strut_error *error) {
-  return create(model, held, NULL, 0, ground, potential, error);
+                                    strut_arena *arena, strut_potential **potential,
+                                    strut_error *error) {
+  return create(model, held, NULL, 0, ground, arena, potential, error);
 }
 
 strut_status strut_potential_create_tied(const strut_model *model, const int32_t *rows, int32_t n,
-                                         strut_potential **potential, strut_error *error) {
-  return create(model, NULL, rows, n, false, potential, error);
+                                         strut_arena *arena, strut_potential **potential,
+                                         strut_error *error) {
+  return create(model, NULL, rows, n, false, arena, potential, error);
 }
 
 void strut_potential_move(const strut_potential *potential, const double *step, double factor,
                           const double *q, double *to) {
   for (int32_t at = 0; at < potential->model->length; at++)
     to[at] = potential->row_of[at] < 0 ? q[at] : q[at] + factor * step[potential->row_of[at]];
-}
-
-void strut_potential_free(strut_potential *potential) {
-  if (!potential) return;
-  strut_arena_free(&potential->arena);
-  strut_release(potential);
 }
 
 /* Minus moment times angle of constant couples at q [J], each angle nearest to that in the shape `near`. */

@@ -20,20 +20,19 @@ typedef struct strut_potential {
   int32_t *place;     /* where the entries of members and contacts stand in the pattern's values */
   double *force;      /* (length) gravity and constant loads [N] */
   double force_scale; /* sum of their magnitudes [N]: "the weight"; 0 without any */
-  strut_arena arena;
 } strut_potential;
 
 /**
- * held: (length) 1 where a static support holds a coordinate besides the scene's own, or NULL. The
- * model must outlive it. STRUT_OK or STRUT_NO_MEMORY.
+ * In `arena`. held: (length) 1 where a static support holds a coordinate besides the scene's own, or NULL.
+ * The model must outlive it. STRUT_OK or STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_potential_create(const strut_model *model, const uint8_t *held,
-                                              bool ground, strut_potential **potential,
-                                              strut_error *error);
+                                              bool ground, strut_arena *arena,
+                                              strut_potential **potential, strut_error *error);
 /** Likewise, without ground, of coordinates that move together: rows (length) from 0 to n - 1, -1 where held. */
 strut_status strut_potential_create_tied(const strut_model *model, const int32_t *rows, int32_t n,
-                                         strut_potential **potential, strut_error *error);
-STRUT_API void strut_potential_free(strut_potential *potential);
+                                         strut_arena *arena, strut_potential **potential,
+                                         strut_error *error);
 
 /** to (length) = q + factor * step (n). */
 void strut_potential_move(const strut_potential *potential, const double *step, double factor,

@@ -23,7 +23,7 @@ expect 0 run rod.yaml --json
 out_has '"stable":	false' '"node":	"tip"' '"growth_rate":	3.13' '"perturbations":	0'
 shows 0 "unstable equilibrium" modes rod.yaml
 out_has "node 'tip'" "unstable  tip moves along x"
-shows 0 "the start settles in                    saddle-1" equilibria rod.yaml
+shows 0 "the start settles in                       saddle-1" equilibria rod.yaml
 out_has "unstable equilibrium"
 
 # Pushed off it hangs, for all of them.

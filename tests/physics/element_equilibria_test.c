@@ -11,7 +11,6 @@
 #include "tests/support/random.h"
 
 FREED_BY(gsl_vector_free, gsl_vector)
-FREED_BY(strut_potential_free, strut_potential)
 
 enum {
   ANCHORS = 3,
@@ -213,11 +212,12 @@ static void search_brutely(brute *b, minima *found) {
 static void check_structure(uint64_t seed) {
   structure s;
   strut_critical_set set;
-  OWN_POINTER(strut_potential) potential;
+  OWN(strut_arena) arena = {0};
+  strut_potential *potential;
   static minima known;
   make(&s, seed);
   OWN_POINTER(strut_model) model = motion_compile(&s.setup.scene);
-  assert_ok(strut_potential_create(model, NULL, false, &potential, NULL));
+  assert_ok(strut_potential_create(model, NULL, false, &arena, &potential, NULL));
   strut_critical_effort effort = {.seed = 1, .saddles = true};
   assert_ok(strut_critical_search(potential, &effort, &set, NULL));
   brute b = {.s = &s};

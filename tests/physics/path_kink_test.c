@@ -5,8 +5,6 @@
 #include "tests/support/dense.h"
 #include "tests/support/random.h"
 
-FREED_BY(strut_potential_free, strut_potential)
-
 static void check_event(const strut_path_event *e, strut_path_event_kind kind, double factor,
                         int32_t before, int32_t after) {
   assert_string_equal(strut_path_event_name(e->kind), strut_path_event_name(kind));
@@ -244,11 +242,11 @@ static double find_steepest(const strut_model *model, const strut_path_point *p)
  * account for every change of it. Up to where a part hangs loose: neutral, with no sign.
  */
 static void check_points(const strut_model *model, const strut_path *path, size_t *kinks) {
-  OWN_POINTER(strut_potential) potential;
+  strut_potential *potential;
   OWN(strut_arena) arena = {0};
   int32_t before = path->points[0].negative;
   size_t at = 0;
-  assert_ok(strut_potential_create(model, NULL, true, &potential, NULL));
+  assert_ok(strut_potential_create(model, NULL, true, &arena, &potential, NULL));
   assert_int_equal(potential->n, 6);
   for (size_t i = 0; i < path->point_count; i++) {
     const strut_path_point *p = &path->points[i];

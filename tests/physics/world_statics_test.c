@@ -20,6 +20,7 @@ typedef struct fixture {
   model_run run;
   motion m;
   strut_potential *potential;
+  strut_arena arena;
   double q[2 * MOST]; /* (length) */
 } fixture;
 
@@ -35,7 +36,7 @@ static void begin(fixture *f, uint64_t seed, unsigned parts) {
     scene->contacts[i].friction.law = STRUT_FRICTION_NONE;
   scene->actuator_count = 0;
   f->m = motion_begin(scene, 1e-3);
-  assert_ok(strut_potential_create(f->m.model, NULL, true, &f->potential, NULL));
+  assert_ok(strut_potential_create(f->m.model, NULL, true, &f->arena, &f->potential, NULL));
   assert_true(f->m.model->length <= 2 * MOST);
   memcpy(f->q, f->m.model->start, (size_t)f->m.model->length * sizeof *f->q);
   for (int32_t i = 0; i < f->potential->n; i++)
@@ -43,7 +44,7 @@ static void begin(fixture *f, uint64_t seed, unsigned parts) {
 }
 
 static void end(fixture *f) {
-  strut_potential_free(f->potential);
+  strut_arena_free(&f->arena);
   motion_free(&f->m);
   model_run_free(&f->run);
 }

@@ -18,7 +18,7 @@ typedef struct fixture {
 
 static void compile(fixture *f, const uint8_t *held, bool ground) {
   assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
-  assert_ok(strut_potential_create(f->model, held, ground, &f->potential, NULL));
+  assert_ok(strut_potential_create(f->model, held, ground, &f->scene.arena, &f->potential, NULL));
 }
 
 /* Compiles and searches with seed 1; checks what every point must be. */
@@ -38,7 +38,6 @@ static void critical_find(fixture *f, const uint8_t *held, bool ground, bool sad
 
 static void fixture_free(fixture *f) {
   strut_critical_free(&f->set);
-  strut_potential_free(f->potential);
   strut_model_free(f->model);
   strut_scene_free(&f->scene);
 }

@@ -15,14 +15,13 @@ typedef struct fixture {
 
 static void compile(fixture *f, const uint8_t *held, bool ground) {
   assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
-  assert_ok(strut_potential_create(f->model, held, ground, &f->potential, NULL));
+  assert_ok(strut_potential_create(f->model, held, ground, &f->scene.arena, &f->potential, NULL));
   assert_ok(strut_minimiser_create(f->potential, &f->scene.arena, &f->minimiser, NULL));
   f->q = strut_arena_allocate(&f->scene.arena, (size_t)f->model->length, sizeof *f->q);
   memcpy(f->q, f->model->start, (size_t)f->model->length * sizeof *f->q);
 }
 
 static void fixture_free(fixture *f) {
-  strut_potential_free(f->potential);
   strut_model_free(f->model);
   strut_scene_free(&f->scene);
 }

@@ -103,13 +103,12 @@ static strut_status search_on_supports(strut_equilibrium_search *search, int32_t
                                       : strut_no_memory(search->error, "");
   if (!status) {
     strut_supports_hold(&search->supports, set, held);
-    status = strut_potential_create(model, held, false, &potential, search->error);
+    status = strut_potential_create(model, held, false, &scratch, &potential, search->error);
   }
   if (!status && potential->n == 0)
     status = strut_fail(search->error, STRUT_USAGE,
                         "with the requested supports held no node can move; hold fewer nodes");
   if (!status) status = search_held(search, potential, held, shape, set, group, &scratch);
-  strut_potential_free(potential);
   strut_model_free(model);
   strut_arena_free(&scratch);
   return status;
@@ -316,10 +315,9 @@ static bool is_pressed(const strut_equilibrium_search *search) {
 }
 
 static strut_status create_potential(strut_equilibrium_search *search, bool ground) {
-  strut_potential_free(search->potential);
-  search->potential = NULL;
   search->on_ground = ground;
-  return strut_potential_create(search->model, NULL, ground, &search->potential, search->error);
+  return strut_potential_create(search->model, NULL, ground, &search->out->arena,
+                                &search->potential, search->error);
 }
 
 static strut_status prepare_search(strut_equilibrium_search *search, const strut_model *original) {
@@ -460,7 +458,6 @@ strut_status strut_equilibria_find(const strut_model *model, const strut_experim
     find_shape_flaws(model, &equilibria->list[i]);
   strut_landscape_free(&h.landscape);
   strut_relaxer_free(h.relaxer);
-  strut_potential_free(h.potential);
   strut_model_free(h.model);
   strut_level_frame_free(&h.level);
   return status;

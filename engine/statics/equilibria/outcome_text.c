@@ -177,13 +177,15 @@ strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_s
 /* True if the free motion leads away, under the potential that the equilibrium was found with. */
 static bool leads_away(const strut_equilibrium_search *search, const strut_equilibrium *equilibrium,
                        uint8_t *held) {
-  strut_potential *potential = NULL;
+  strut_potential *potential;
+  strut_arena scratch = {0};
   if (!equilibrium->supports) return stays_displaced(search->potential, &equilibrium->point);
   memset(held, 0, (size_t)search->model->length);
   strut_supports_hold(&search->supports, equilibrium->supports, held);
-  bool stays = strut_potential_create(search->model, held, false, &potential, NULL) == STRUT_OK &&
-               stays_displaced(potential, &equilibrium->point);
-  strut_potential_free(potential);
+  bool stays =
+      strut_potential_create(search->model, held, false, &scratch, &potential, NULL) == STRUT_OK &&
+      stays_displaced(potential, &equilibrium->point);
+  strut_arena_free(&scratch);
   return stays;
 }
 

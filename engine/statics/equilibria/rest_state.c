@@ -30,9 +30,9 @@ static double sum_member_forces(const strut_model *model, const double *position
 static strut_status judge_rest(const strut_model *model, strut_arena *arena, strut_rest_state *rest,
                                strut_error *error) {
   strut_potential *potential = NULL;
-  strut_status status = strut_potential_create(model, NULL, true, &potential, error);
+  strut_status status = strut_potential_create(model, NULL, true, arena, &potential, error);
   if (status) return status;
-  double *g = strut_allocate((size_t)potential->n, sizeof *g);
+  double *g = strut_arena_allocate(arena, (size_t)potential->n, sizeof *g);
   strut_node_pushes pushes;
   if (g && strut_closed_contacts(model, rest->q, 0.0, arena, &pushes)) {
     rest->closed = pushes.node, rest->normal = pushes.normal, rest->closed_count = pushes.count;
@@ -45,8 +45,6 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
   } else {
     status = strut_no_memory(error, "");
   }
-  strut_release(g);
-  strut_potential_free(potential);
   return status;
 }
 
@@ -56,8 +54,8 @@ static strut_status prepare_relaxation(strut_equilibrium_search *search, const s
   if (!status) status = strut_model_compile(&search->level.scene, &search->model, search->error);
   if (!status) {
     search->on_ground = search->model->contacts.count > 0;
-    status = strut_potential_create(search->model, NULL, search->on_ground, &search->potential,
-                                    search->error);
+    status = strut_potential_create(search->model, NULL, search->on_ground, &search->out->arena,
+                                    &search->potential, search->error);
   }
   if (!status) search->instability = strut_equilibrium_search_instability(search);
   search->supports.pin = true;
@@ -74,7 +72,6 @@ static strut_status prepare_relaxation(strut_equilibrium_search *search, const s
 
 static void free_search(strut_equilibrium_search *search) {
   strut_relaxer_free(search->relaxer);
-  strut_potential_free(search->potential);
   strut_model_free(search->model);
   strut_level_frame_free(&search->level);
   strut_arena_free(&search->out->arena);

@@ -386,7 +386,7 @@ static bool create(grip_search *self, const double *from, strut_arena *scratch) 
   if (!held || !self->friction) return false;
   held[2 * self->pin] = 1;
   memcpy(self->q, from, length * sizeof *self->q);
-  return strut_potential_create(self->search->model, held, true, &self->potential, NULL) ==
+  return strut_potential_create(self->search->model, held, true, scratch, &self->potential, NULL) ==
              STRUT_OK &&
          strut_minimiser_create(self->potential, scratch, &self->minimiser, NULL) == STRUT_OK;
 }
@@ -419,7 +419,6 @@ strut_status strut_equilibrium_search_hold(strut_equilibrium_search *search,
   candidate->e.outcome = STRUT_OUTCOME_NO_REST;
   if (!status && find_rest(&g, sum_forces(search, 0), &candidate->e.rest_residual))
     status = accept(search, candidate, &g);
-  strut_potential_free(g.potential);
   strut_arena_free(&scratch);
   return status;
 }

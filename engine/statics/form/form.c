@@ -374,7 +374,8 @@ static strut_status polish(strut_former *former, strut_error *error) {
   double *q = NULL;
   strut_scene *scene = former->scene;
   strut_status status = strut_model_compile(scene, &model, error);
-  if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
+  if (status == STRUT_OK)
+    status = strut_potential_create(model, NULL, true, &former->arena, &potential, error);
   if (status == STRUT_OK)
     status = strut_minimiser_create(potential, &former->arena, &minimiser, error);
   if (status == STRUT_OK)
@@ -394,7 +395,6 @@ static strut_status polish(strut_former *former, strut_error *error) {
       scene->nodes[i].start[c] = q[2 * i + c];
       if (former->form->from == STRUT_FORM_LENGTHS) scene->nodes[i].position[c] = q[2 * i + c];
     }
-  strut_potential_free(potential);
   strut_model_free(model);
   return status;
 }
@@ -531,7 +531,6 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
                              strut_form *form, strut_error *error) {
   strut_scene *scene = &setup->scene;
   strut_model *model = NULL;
-  strut_potential *potential = NULL;
   *form = (strut_form){.from = choose_source(scene, options->from)};
   strut_status status = strut_linear_solver_load(error);
   if (status) return status;
@@ -539,11 +538,12 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);
   status = drawn ? strut_model_compile(scene, &model, error) : strut_no_memory(error, "");
-  if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
+  if (status == STRUT_OK)
+    status = strut_potential_create(model, NULL, true, &f.arena, &f.potential, error);
   if (status == STRUT_OK) {
     for (size_t i = 0; i < 2 * scene->node_count; i++)
       drawn[i] = scene->nodes[i / 2].position[i % 2];
-    f.model = model, f.potential = potential;
+    f.model = model;
     f.size = model->size > 0 ? model->size : 1.0;
     if (f.size > LARGEST_SIZE)
       status = strut_fail(error, STRUT_BAD_SCENE,
@@ -559,7 +559,6 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
     if (form->moved > 0) drop_shapes(scene);
     status = measure_members(scene, form, error);
   }
-  strut_potential_free(potential);
   strut_model_free(model);
   strut_arena_free(&f.arena);
   return strut_experiment_end(&setup->experiment, status, error);

@@ -11,9 +11,9 @@ typedef struct strut_former {
   strut_experiment *experiment;
   const strut_form_options *options;
   strut_form *form;
-  const strut_model *model;         /* the original scene, compiled */
-  const strut_potential *potential; /* of it: free coordinates, weight and loads */
-  double size;                      /* of the drawn shape [m], > 0 */
+  const strut_model *model;   /* the original scene, compiled */
+  strut_potential *potential; /* of it: free coordinates, weight and loads */
+  double size;                /* of the drawn shape [m], > 0 */
   strut_arena arena;
 } strut_former;
 

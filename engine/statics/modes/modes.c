@@ -510,15 +510,14 @@ strut_status strut_modes_find(const strut_model *model, const strut_experiment *
   if (!held) return strut_no_memory(error, "");
   if (options->stuck) status = hold_stuck(model, &rest, held, error);
   if (status == STRUT_OK)
-    status =
-        strut_vibration_create(model, rest.q, rest.closed, rest.closed_count, held, &work.v, error);
+    status = strut_vibration_create(model, rest.q, rest.closed, rest.closed_count, held,
+                                    &modes->arena, &work.v, error);
   if (status == STRUT_OK) {
     modes->dense = work.v->n <= STRUT_DENSE_MODES && !options->sparse;
     int32_t usual = modes->dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
     status = solve_modes(&work, options->count > 0 ? options->count : usual, modes, error);
   }
   strut_modes_solver_free(&work.solver);
-  strut_vibration_free(work.v);
   return strut_experiment_end(experiment, status, error);
 }
 

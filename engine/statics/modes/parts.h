@@ -15,7 +15,7 @@
 
 typedef struct strut_vibration {
   const strut_model *model;
-  strut_potential *shape; /* coordinates, and the pattern of all matrices here; owned */
+  strut_potential *shape; /* coordinates, and the pattern of all matrices here */
   int32_t n;
   double *q,
       *low; /* (length) positions, and how far from there to equilibrium: less than the last bits of q
@@ -28,19 +28,17 @@ typedef struct strut_vibration {
   int32_t massive;   /* rows with mass */
   double largest;    /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
   double *work;      /* (n) */
-  strut_arena arena;
-  double *own_mass; /* (n) diagonal of M without sliding masses */
+  double *own_mass;  /* (n) diagonal of M without sliding masses */
 } strut_vibration;
 
 /**
- * At positions q (length); closed: nodes that touch the ground; held: (length) as for
+ * In `arena`, at positions q (length); closed: nodes that touch the ground; held: (length) as for
  * strut_potential_create. The model must outlive it. STRUT_OK or STRUT_NO_MEMORY.
  */
 strut_status strut_vibration_create(const strut_model *model, const double *q,
                                     const int32_t *closed, int32_t closed_count,
-                                    const uint8_t *held, strut_vibration **vibration,
-                                    strut_error *error);
-void strut_vibration_free(strut_vibration *vibration);
+                                    const uint8_t *held, strut_arena *arena,
+                                    strut_vibration **vibration, strut_error *error);
 
 /** The force of that number in the shape (strut_force_begin), with `low` to first order; false: it does not act. */
 bool strut_vibration_force_at(const strut_vibration *vibration, int32_t number, strut_force *force);

@@ -86,7 +86,7 @@ bool strut_vibration_is_borderline(const strut_vibration *vibration, int32_t num
 }
 
 /* M in the pattern's places: masses on top of zeros there. */
-static bool add_masses(strut_vibration *vibration) {
+static bool add_masses(strut_vibration *vibration, strut_arena *arena) {
   const strut_model *model = vibration->model;
   const strut_sparse *matrix = vibration->shape->pattern;
   const int32_t *row_of = vibration->shape->row_of;
@@ -97,7 +97,7 @@ static bool add_masses(strut_vibration *vibration) {
   if (strut_triplets_reserve(&sum, most, &scratch)) {
     strut_tangent_add_pattern(model, row_of, true, &sum);
     strut_mass_add(model, row_of, 1.0, true, &sum); /* sliding ones where they are at t = 0 */
-    mass = strut_sparse_build(vibration->n, &sum, &vibration->arena);
+    mass = strut_sparse_build(vibration->n, &sum, arena);
   }
   strut_arena_free(&scratch);
   if (!mass) return false;
@@ -156,33 +156,28 @@ void strut_vibration_update(strut_vibration *vibration) {
   bound_spectrum(vibration);
 }
 
-static bool allocate(strut_vibration *vibration) {
+static bool allocate(strut_vibration *vibration, strut_arena *arena) {
   const strut_model *model = vibration->model;
   size_t n = (size_t)vibration->n, entries = (size_t)vibration->shape->pattern->start[n];
-  strut_arena *arena = &vibration->arena;
   return STRUT_ALLOCATE(arena, STRUT_NEW(vibration->closed, model->contacts.count),
                         STRUT_NEW(vibration->state, (size_t)strut_force_count(model, false))) &&
          STRUT_NUMBERS(arena, model->length, &vibration->q, &vibration->low) &&
          STRUT_NUMBERS(arena, entries, &vibration->k, &vibration->d) &&
          STRUT_NUMBERS(arena, n, &vibration->mass, &vibration->own_mass, &vibration->work) &&
-         add_masses(vibration);
+         add_masses(vibration, arena);
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,
                                     const int32_t *closed, int32_t closed_count,
-                                    const uint8_t *held, strut_vibration **vibration,
-                                    strut_error *error) {
-  strut_vibration *v = *vibration = strut_allocate(1, sizeof *v);
+                                    const uint8_t *held, strut_arena *arena,
+                                    strut_vibration **vibration, strut_error *error) {
+  strut_vibration *v = *vibration = strut_arena_allocate(arena, 1, sizeof *v);
   if (!v) return strut_no_memory(error, "");
   v->model = model;
-  strut_status status = strut_potential_create(model, held, true, &v->shape, error);
-  if (status == STRUT_OK) v->n = v->shape->n;
-  if (status == STRUT_OK && !allocate(v)) status = strut_no_memory(error, "");
-  if (status != STRUT_OK) {
-    strut_vibration_free(v);
-    *vibration = NULL;
-    return status;
-  }
+  strut_status status = strut_potential_create(model, held, true, arena, &v->shape, error);
+  if (status != STRUT_OK) return status;
+  v->n = v->shape->n;
+  if (!allocate(v, arena)) return strut_no_memory(error, "");
   memcpy(v->q, q, (size_t)model->length * sizeof *q);
   for (int32_t i = 0; i < model->contacts.count; i++)
     for (int32_t k = 0; k < closed_count; k++)
@@ -190,13 +185,6 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
         v->closed[i] = !model->contacts.surface || strut_contact_gap(&model->contacts, i, q) < 0.0;
   strut_vibration_update(v);
   return STRUT_OK;
-}
-
-void strut_vibration_free(strut_vibration *vibration) {
-  if (!vibration) return;
-  strut_potential_free(vibration->shape);
-  strut_arena_free(&vibration->arena);
-  strut_release(vibration);
 }
 
 void strut_vibration_force(const strut_vibration *vibration, double *sum) {

@@ -191,9 +191,9 @@ static strut_status settle_cell(const lattice_cell *cell, const strut_experiment
   strut_minimiser *minimiser = NULL;
   strut_arena scratch = {0};
   double *gradient = strut_arena_allocate(&scratch, (size_t)cell->n, sizeof *gradient);
-  strut_status status =
-      gradient ? strut_potential_create_tied(cell->model, cell->row, cell->n, &potential, error)
-               : strut_no_memory(error, "");
+  strut_status status = gradient ? strut_potential_create_tied(cell->model, cell->row, cell->n,
+                                                               &scratch, &potential, error)
+                                 : strut_no_memory(error, "");
   if (status == STRUT_OK) status = strut_minimiser_create(potential, &scratch, &minimiser, error);
   if (status == STRUT_OK) {
     strut_minimiser_watch(minimiser, experiment->interrupt);
@@ -206,7 +206,6 @@ static strut_status settle_cell(const lattice_cell *cell, const strut_experiment
     if (status == STRUT_OK && !(descent.residual <= MOST_LEFT * descent.rounding))
       status = not_found(cell, gradient, error);
   }
-  strut_potential_free(potential);
   strut_arena_free(&scratch);
   return status;
 }
@@ -237,7 +236,6 @@ static void free_solver(solver *self) {
   if (self->m) gsl_matrix_complex_free(self->m);
   if (self->values) gsl_vector_free(self->values);
   if (self->workspace) gsl_eigen_genherm_free(self->workspace);
-  strut_vibration_free(self->v);
 }
 
 static void add_entry(gsl_matrix_complex *matrix, int32_t row, int32_t column, gsl_complex value) {
@@ -474,7 +472,7 @@ static strut_status find(const strut_model *model, const strut_experiment *exper
   for (size_t i = 0; i < length; i += 2)
     waves->moved = fmax(waves->moved, hypot(q[i] - before[i], q[i + 1] - before[i + 1]));
   solver s = {.cell = &cell, .experiment = experiment};
-  status = strut_vibration_create(model, q, NULL, 0, NULL, &s.v, error);
+  status = strut_vibration_create(model, q, NULL, 0, NULL, &waves->arena, &s.v, error);
   if (status == STRUT_OK) status = check_masses(&s, &waves->arena, error);
   if (status == STRUT_OK) status = solve_zone(&s, waves, error);
   free_solver(&s);

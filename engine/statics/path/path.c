@@ -206,7 +206,8 @@ static strut_status descend_to_rest(const path_start *self, const uint8_t *held,
   strut_minimiser *minimiser = NULL;
   strut_arena scratch = {0};
   const char *where = without ? "without the load" : "at the start of the path";
-  strut_status status = strut_potential_create(self->model, held, true, &potential, error);
+  strut_status status =
+      strut_potential_create(self->model, held, true, &scratch, &potential, error);
   if (status == STRUT_OK && potential->n > 0)
     status = strut_minimiser_create(potential, &scratch, &minimiser, error);
   if (status == STRUT_OK && potential->n > 0) {
@@ -222,7 +223,6 @@ static strut_status descend_to_rest(const path_start *self, const uint8_t *held,
                           "%s no equilibrium was found to start from: the residual is %.3g N",
                           where, descent.residual);
   }
-  strut_potential_free(potential);
   strut_arena_free(&scratch);
   return status;
 }

@@ -71,7 +71,8 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
   *system = (strut_path_system){.model = model, .held.most = STRUT_PATH_MOTIONS};
   system->size = model->size > 0 ? model->size : 1.0;
   if (!make_arrays(system)) return strut_no_memory(error, "");
-  strut_status status = strut_potential_create(model, held, false, &system->potential, error);
+  strut_status status =
+      strut_potential_create(model, held, false, &system->arena, &system->potential, error);
   if (status) return status;
   system->n = system->potential->n;
   if (system->n > STRUT_PATH_COORDINATES) return STRUT_OK;
@@ -90,7 +91,6 @@ static void free_parameter(strut_path_parameter *parameter) {
 void strut_path_system_free(strut_path_system *system) {
   gsl_eigen_symmv_free(system->algebra.eigen);
   gsl_eigen_symm_free(system->algebra.values_only);
-  strut_potential_free(system->potential);
   free_parameter(&system->parameter);
   strut_path_terms_release(&system->equations.terms);
   strut_arena_free(&system->arena);

@@ -298,12 +298,10 @@ static bool separate(sorter *self, size_t *silent) {
 }
 
 /* The rigid-body motions over the same rows as A; returns how many, or -1: out of memory. */
-static int32_t rigid_motions(const sorter *self, double *motion) {
-  strut_potential *rows = NULL;
-  if (strut_potential_create(self->model, NULL, false, &rows, NULL) != STRUT_OK) return -1;
-  int32_t count = strut_rigid_motions(rows, self->q, NULL, motion);
-  strut_potential_free(rows);
-  return count;
+static int32_t rigid_motions(sorter *self, double *motion) {
+  strut_potential *rows;
+  if (strut_potential_create(self->model, NULL, false, &self->scratch, &rows, NULL)) return -1;
+  return strut_rigid_motions(rows, self->q, NULL, motion);
 }
 
 static strut_status follow(sorter *self, strut_mechanism *mechanism) {

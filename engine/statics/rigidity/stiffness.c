@@ -288,7 +288,8 @@ strut_status strut_node_stiffness_create(const strut_model *model, const double 
   *to = NULL;
   *reason = NULL;
   if (!self) return strut_no_memory(error, "");
-  strut_status status = strut_potential_create(model, NULL, true, &self->potential, error);
+  strut_status status =
+      strut_potential_create(model, NULL, true, &self->arena, &self->potential, error);
   if (!status) self->n = (size_t)self->potential->n;
   if (!status && self->n == 0) *reason = "nothing can move";
   if (!status && self->n > STRUT_STIFFNESS_COORDINATES) *reason = "more than 1000 free coordinates";
@@ -303,7 +304,6 @@ strut_status strut_node_stiffness_create(const strut_model *model, const double 
 
 void strut_node_stiffness_free(stiff *self) {
   if (!self) return;
-  strut_potential_free(self->potential);
   strut_arena_free(&self->arena);
   strut_release(self);
 }
