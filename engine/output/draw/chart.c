@@ -9,7 +9,7 @@
 #include "engine/output/draw/painter.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
-static const double PADDING = 3, WIDEST = 150;                                  /* [pt] */
+static const double PADDING = 3;                                                /* [pt] */
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 /* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
 static const double TURN = 1.25, VISIBLE = 8, COLUMN = 1;
@@ -43,9 +43,8 @@ static strut_pen pen_of(const strut_panel *panel, size_t i) {
 }
 
 static bool has_markers(const strut_panel *panel, const strut_series *series) {
-  if (series->markers != STRUT_MARKERS_AUTO) return series->markers == STRUT_MARKERS_ALL;
-  return panel->series_count > 1 && !(series->pen.width > 0) && !series->cloud &&
-         !(series->bar > 0);
+  return !series->unmarked && panel->series_count > 1 && !(series->pen.width > 0) &&
+         !series->cloud && !(series->bar > 0);
 }
 
 /* ---- the cells of a map ---- */
@@ -329,7 +328,7 @@ static void draw_point(const chart *self, const line *l, size_t k) {
 /* Whole points, on the frame too. */
 static void draw_points(const chart *self, const line *l) {
   const strut_series *series = l->series;
-  bool all = series->cloud || series->markers == STRUT_MARKERS_ALL || series->count <= FEW_POINTS;
+  bool all = series->cloud || series->count <= FEW_POINTS;
   if (!series->cloud && (!has_markers(self->panel, series) || (!all && !series->label))) return;
   /* A few markers, at other points than those of the other curves. */
   size_t every = all ? 1 : series->count / MARKERS;
@@ -464,13 +463,9 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   double above = strut_draw_key(canvas, place, key.keys, key.key_count, true).height;
   if (above > 0) above += 2 * PADDING;
   strut_arena_free(&key.arena);
-  const strut_box scale = {c.axes.frame.x, box.y + above, fmin(c.axes.frame.width, WIDEST),
-                           STRUT_SCALE_HEIGHT};
-  if (panel->scale.name) above += scale.height;
   box.y += above, box.height -= above;
   c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
   if (key.failed || !place_lines(&c)) return false;
   draw_data(&c);
-  if (panel->scale.name) strut_draw_colour_scale(canvas, scale, &panel->scale);
   return true;
 }

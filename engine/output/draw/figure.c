@@ -30,6 +30,7 @@ static bool begin_page(page *self, strut_figure *figure, const strut_plot *plot)
   *self = (page){.figure = figure, .title = plot->title ? plot->title : figure->title};
   for (size_t i = 0; i < figure->panel_count && fine; i += together)
     fine = strut_panels_settle(&figure->panels[i], together, &figure->arena);
+  if (figure->panel_count && figure->panels->scale.name) figure->scale = figure->panels->scale;
   for (size_t i = 0; figure->one_legend && i < figure->panel_count; i++)
     strut_panel_legend(&figure->panels[i], &self->legend);
   return fine && !self->legend.failed;
@@ -113,9 +114,9 @@ static double chart_height(const strut_figure *figure, strut_canvas *canvas,
   if (panel->x.name_count)
     axes = strut_axes_place(canvas, (strut_box){0, 0, width, LOWEST}, panel->x, panel->y);
   double aspect = figure->aspect > 0 ? figure->aspect : ASPECT;
-  double height = aspect * width, scale = panel->scale.name ? STRUT_SCALE_HEIGHT : 0;
+  double height = aspect * width;
   if (figure->least_width > 0) height = fmax(LOWEST, fmin(height, HIGHEST));
-  return panel->height > 0 ? panel->height : height + scale + (axes.upwards ? axes.ticks : 0);
+  return panel->height > 0 ? panel->height : height + (axes.upwards ? axes.ticks : 0);
 }
 
 /* The row of (count) panels; draws it if `fine`, which becomes false where memory is out. Returns its height. */
@@ -201,7 +202,7 @@ static double put_page(page *self, strut_canvas *canvas, double width, bool *fin
     box.y += put_group(self, canvas, box, &g, fine);
     i += g.count;
     if (!foot || !(g.views || i == figure->panel_count)) continue;
-    if (g.views || figure->key_count) box.y += 0.5 * GAP;
+    if (g.views || figure->key_count || figure->scale.name) box.y += 0.5 * GAP;
     box.y += put_foot(self, canvas, box, g.views ? g.width : 0, draw);
     foot = false;
   }

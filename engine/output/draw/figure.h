@@ -36,13 +36,6 @@ typedef struct strut_key_item {
 
 /* ---- charts ---- */
 
-/** Markers along a line. */
-typedef enum strut_markers {
-  STRUT_MARKERS_AUTO, /* beside other series: at every point of few, at some of many */
-  STRUT_MARKERS_ALL,
-  STRUT_MARKERS_NONE
-} strut_markers;
-
 /** A point of a series, SI. What strut_add_point makes has neither whisker nor value. */
 typedef struct strut_point {
   double x, y;      /* what is not finite breaks the line */
@@ -58,9 +51,9 @@ typedef struct strut_series {
   strut_point *points; /* (count) */
   int look;            /* index of colour, dashes and marker; -1: the series' own index */
   strut_pen pen;       /* replaces the look's line; width 0: the look */
-  bool cloud; /* dots instead of a line; in the look's colour where the panel has no scale */
-  double bar; /* bars from 0 instead of a line, so wide along x; 0: none */
-  strut_markers markers;
+  bool cloud;    /* dots instead of a line; in the look's colour where the panel has no scale */
+  double bar;    /* bars from 0 instead of a line, so wide along x; 0: none */
+  bool unmarked; /* else markers tell it from others: at every point of few, at some of many */
 } strut_series;
 
 /** A grey area from x = low to high, or y; its label goes into the legend, or is NULL. */
@@ -135,7 +128,7 @@ typedef struct strut_panel {
   strut_label
       *marks; /* at places of the axes or of the plane; beyond the y axis a triangle at its end */
   const char *remark; /* inside the frame, where it is emptiest; or NULL */
-  /* Beside it; limits that are equal come from the values. Name NULL: none. */
+  /* At the figure's foot; limits that are equal come from the values. Name NULL: none. */
   strut_colour_scale scale;
   double height; /* [pt]; 0: by the figure's aspect */
   bool whole;    /* takes a row of its own */

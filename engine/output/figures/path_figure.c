@@ -187,7 +187,6 @@ static void add_curves(path_picture *picture, strut_panel *panel, strut_panel *v
     bool branch = i < path->branch_count;
     strut_series *curve = strut_add_series(&picture->figure, panel, NULL);
     curve->pen = line_pen(branch);
-    curve->markers = STRUT_MARKERS_NONE;
     for (size_t k = 0; branch && k < path->branches[i].point_count; k++) {
       const strut_path_point *point = &path->branches[i].points[k];
       add_point(picture, curve, NULL, &point->at, point->negative > 0);

@@ -222,7 +222,7 @@ static void add_panel(strut_run_scene *run, kind of, size_t first, double height
   for (size_t i = 0; i < count; i++) {
     double start = b.change ? value_at(&b, chosen[i], first) : 0;
     strut_series *series = strut_add_series(run->page, panel, one ? NULL : label_of(&b, chosen[i]));
-    if (measured(&b, chosen[i], NULL)) series->markers = STRUT_MARKERS_NONE;
+    if (measured(&b, chosen[i], NULL)) series->unmarked = true;
     for (size_t f = first; f <= last; f++) {
       double value = value_at(&b, chosen[i], f) - start;
       strut_add_point(run->page, series, run->motion->time[f], value);

@@ -113,11 +113,11 @@ static void add_mechanism(picture *self, int32_t number) {
 }
 
 /* Forces, states of self-stress, mechanisms: as many as go in; the last two share the room. Returns how many do not. */
-static int32_t add_panels(picture *self, int32_t columns) {
+static int32_t add_panels(picture *self) {
   const strut_rigidity *rigidity = self->rigidity;
   int32_t states = rigidity->states.force ? rigidity->states.count : 0;
   int32_t motions = rigidity->mechanisms.list ? rigidity->mechanisms.count : 0;
-  int32_t room = PANELS / COLUMNS * columns;
+  int32_t room = PANELS;
   self->bounds = strut_bounds_of(self->model, self->q);
   self->swing = SWING * strut_bounds_extent(&self->bounds);
   for (int d = 0; d < 2 && motions > 0; d++) /* there is room for motions */
@@ -154,7 +154,7 @@ strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *mo
                .rigidity = rigidity,
                .figure = {.title = model->scene->name, .columns = COLUMNS, .yardstick = true}};
   int states = (int)rigidity->states.count, mechanisms = (int)rigidity->mechanisms.count;
-  int left_out = add_panels(&p, (int32_t)fmax(1, fmin(COLUMNS, floor(plot->width / 110))));
+  int left_out = add_panels(&p);
   p.figure.note =
       strut_figure_text(&p.figure, "%s: %d state%s of self-stress, %d mechanism%s", at, states,
                         states == 1 ? "" : "s", mechanisms, mechanisms == 1 ? "" : "s");
@@ -341,7 +341,7 @@ strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model
   for (int32_t b = 0; b < waves->shown; b++) {
     strut_series *series = strut_add_series(&figure, panel, NULL);
     series->look = 0;
-    series->markers = STRUT_MARKERS_NONE;
+    series->unmarked = true;
     for (size_t i = 0; i < waves->count; i++)
       strut_add_point(&figure, series, one ? waves->phase[i][0] : waves->along[i],
                       waves->frequency[i * (size_t)waves->band_count + (size_t)b]);

@@ -168,11 +168,17 @@ static void add_setting(diagram *self, strut_panel *panel, const char *name, con
   panel->remark = "at the upper edge: diverged";
 }
 
-/* The step of a row on the front. */
-static const char *step_of(diagram *self, const strut_tradeoff_row *row) {
-  char text[STRUT_TRADEOFF_TEXT];
+/* The step of a row on the front; with its group where another one on the front has the same. */
+static const char *step_of(diagram *self, const strut_tradeoff_row *row, const char *group) {
+  const strut_tradeoff *tradeoff = self->tradeoff;
+  char own[STRUT_TRADEOFF_TEXT], other[STRUT_TRADEOFF_TEXT];
+  bool alike = false;
   if (!row->front) return "";
-  return strut_figure_text(&self->figure, "%s", strut_tradeoff_step_text(row, text));
+  strut_tradeoff_step_text(row, own);
+  for (const strut_tradeoff_row *r = tradeoff->rows; r < tradeoff->rows + tradeoff->row_count; r++)
+    alike = alike || (r != row && r->front && r->variant == row->variant &&
+                      strcmp(strut_tradeoff_step_text(r, other), own) == 0);
+  return strut_figure_text(&self->figure, alike ? "%s, %s" : "%s", own, group);
 }
 
 /* Step errors of the unchanged model, a line for each method. */
@@ -184,7 +190,8 @@ static void add_methods(diagram *self) {
   for (const strut_tradeoff_row *r = tradeoff->rows; r < tradeoff->rows + tradeoff->row_count;
        r++) {
     const char *group = strut_figure_text(&self->figure, "%s", strut_tradeoff_group_text(r, text));
-    if (r->variant == 0) add_setting(self, panel, group, step_of(self, r), r, &r->error_spread);
+    if (r->variant == 0)
+      add_setting(self, panel, group, step_of(self, r, group), r, &r->error_spread);
   }
 }
 

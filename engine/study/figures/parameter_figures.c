@@ -44,7 +44,7 @@ static void add_data(strut_figure *figure, const strut_fit_result *result, size_
   add_dots(figure, panel, "measured", match, s, match->series[s].measured, 1.0)->look = 1;
   strut_series *line = strut_add_series(figure, panel, "model");
   line->look = 0;
-  line->markers = match->count > 1 ? STRUT_MARKERS_NONE : STRUT_MARKERS_ALL;
+  line->unmarked = true;
   for (size_t i = 0; i < match->count; i++)
     strut_add_point(figure, line, place_of(match, i), model[i]);
 }
@@ -76,7 +76,7 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
   panel->x = strut_axis_in(e->name, e->unit, result->fit->variables[k].shown);
   panel->y = strut_axis_of("rise of chi-square", "");
   strut_series *line = strut_add_series(figure, panel, "by the standard error");
-  line->look = 1, line->markers = STRUT_MARKERS_NONE;
+  line->look = 1, line->unmarked = true;
   for (int i = 0; i < CURVE && isfinite(e->error); i++) {
     double z = 5.0 * i / (CURVE - 1.0) - 2.5;
     strut_add_point(figure, line, e->value + z * e->error, z * z);
@@ -84,7 +84,7 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
   for (int side = 0; side < 2; side++) {
     double way = ends[side].values[own] - e->value, rise = (ends[side].sum - best) / variance;
     strut_series *profile = strut_add_series(figure, panel, "through the ends of the profile");
-    profile->look = 0, profile->markers = STRUT_MARKERS_NONE;
+    profile->look = 0, profile->unmarked = true;
     for (int i = 0; i < CURVE && isfinite(rise); i++) {
       double part = i / (CURVE - 1.0);
       strut_add_point(figure, profile, e->value + part * way, part * part * rise);
