@@ -2,8 +2,10 @@
 #include "engine/base/status.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 static const struct {
   int exit_code;
@@ -37,4 +39,12 @@ strut_status strut_fail(strut_error *error, strut_status status, const char *for
 
 strut_status strut_no_memory(strut_error *error, const char *purpose) {
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory%s%s", *purpose ? " " : "", purpose);
+}
+
+strut_status strut_file_fail(strut_error *error, const char *what, const char *path, int code) {
+  char reason[128];
+  if (code == ENOMEM) return strut_no_memory(error, "");
+  if (strerror_r(code, reason, sizeof reason) != 0)
+    snprintf(reason, sizeof reason, "error %d", code);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%.400s': %s", what, path, reason);
 }

@@ -49,3 +49,6 @@ STRUT_API strut_status strut_fail(strut_error *error, strut_status status, const
 
 /** The same for STRUT_NO_MEMORY: "out of memory", and what for, such as "while drawing", or "". */
 STRUT_API strut_status strut_no_memory(strut_error *error, const char *purpose);
+/** "cannot WHAT 'PATH': " and the reason of an errno: STRUT_FILE_TROUBLE, or STRUT_NO_MEMORY for ENOMEM. */
+STRUT_API strut_status strut_file_fail(strut_error *error, const char *what, const char *path,
+                                       int code);

@@ -16,16 +16,6 @@
 
 enum { MOST_NAMES = 1000, NUMBER_ROOM = 48 };
 
-strut_status strut_file_fail(strut_error *error, const char *what, const char *directory,
-                             const char *name, int code) {
-  char reason[128];
-  if (code == ENOMEM) return strut_no_memory(error, "while writing files");
-  if (strerror_r(code, reason, sizeof reason) != 0)
-    snprintf(reason, sizeof reason, "error %d", code);
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%s%s%s': %s", what, directory,
-                    name ? "/" : "", name ? name : "", reason);
-}
-
 char *strut_file_folder(const char *path, const char **name) {
   const char *slash = strrchr(path, '/');
   size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;
@@ -42,7 +32,7 @@ static bool is_directory(const char *path) {
 
 strut_status strut_directory_create(const char *directory, strut_error *error) {
   size_t length = strlen(directory);
-  if (length == 0) return strut_file_fail(error, "create directory", directory, NULL, ENOENT);
+  if (length == 0) return strut_file_fail(error, "create directory", directory, ENOENT);
   char *path = strut_allocate(length + 1, 1);
   if (!path) return strut_no_memory(error, "while writing files");
   strut_status status = STRUT_OK;
@@ -52,8 +42,7 @@ strut_status strut_directory_create(const char *directory, strut_error *error) {
     path[i] = '\0';
     if (mkdir(path, 0777) != 0) {
       int code = errno;
-      if (!is_directory(path))
-        status = strut_file_fail(error, "create directory", path, NULL, code);
+      if (!is_directory(path)) status = strut_file_fail(error, "create directory", path, code);
     }
     path[i] = '/';
   }
@@ -103,7 +92,7 @@ strut_status strut_file_open_path(strut_file *file, const char *path, strut_erro
     memcpy(file->path, path, length);
     code = open_part(file, folder, names[0], capacity);
   }
-  if (code) status = strut_file_fail(error, "write", path, NULL, code);
+  if (code) status = strut_file_fail(error, "write", path, code);
   if (status) forget(file);
   strut_release(folder);
   return status;
@@ -133,7 +122,7 @@ strut_status strut_file_commit(strut_file *file, strut_error *error) {
   if (!code && !is_still(fileno(file->stream), file->part)) code = ENOENT;
   if (fclose(file->stream) != 0 && !code) code = errno;
   if (code)
-    status = strut_file_fail(error, "write", file->path, NULL, code);
+    status = strut_file_fail(error, "write", file->path, code);
   else if (file->held.path)
     status = strut_stage_move(file->held.path, folder, names, error);
   if (status) unlink(file->part);
@@ -151,7 +140,7 @@ void strut_file_abandon(strut_file *file) {
 }
 
 strut_status strut_file_trouble(const strut_file *file, strut_error *error) {
-  return strut_file_fail(error, "write", file->path, NULL, errno ? errno : EIO);
+  return strut_file_fail(error, "write", file->path, errno ? errno : EIO);
 }
 
 void strut_file_remove(const char *directory, const char *name) {

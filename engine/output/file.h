@@ -51,9 +51,6 @@ STRUT_API strut_status strut_file_commit(strut_file *file, strut_error *error);
 STRUT_API void strut_file_abandon(strut_file *file);
 /** Reports that writing into the open file failed, with the reason in errno; returns the status. */
 STRUT_API strut_status strut_file_trouble(const strut_file *file, strut_error *error);
-/** STRUT_FILE_TROUBLE: "cannot WHAT 'DIRECTORY/NAME': " and the reason of an errno; NAME may be NULL. STRUT_NO_MEMORY for ENOMEM. */
-STRUT_API strut_status strut_file_fail(strut_error *error, const char *what, const char *directory,
-                                       const char *name, int code);
 /** The folder of a path in a block of strut_allocate, and its name within. NULL: memory is out. */
 STRUT_API char *strut_file_folder(const char *path, const char **name);
 /** Removes directory/name if it is there. */

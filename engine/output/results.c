@@ -38,7 +38,7 @@ strut_status strut_results_begin_named(strut_results *results, const char *direc
   memcpy(results->directory, directory, strlen(directory));
   status = strut_ownership_check(directory, names, error);
   int code = status == STRUT_OK ? strut_stage_create(&results->held, directory) : 0;
-  if (code) status = strut_file_fail(error, "write", directory, NULL, code);
+  if (code) status = strut_file_fail(error, "write", directory, code);
   results->stage = results->held.path;
   if (status != STRUT_OK) strut_results_abandon(results);
   return status;
@@ -137,6 +137,13 @@ static bool is_listed(list *self, const char *name, uint64_t size, uint64_t sum)
   return false;
 }
 
+static strut_status cannot_write(strut_error *error, const char *directory, const char *name,
+                                 int code) {
+  char path[600];
+  snprintf(path, sizeof path, "%s%s%s", directory, name ? "/" : "", name ? name : "");
+  return strut_file_fail(error, "write", path, code);
+}
+
 /* May the file be replaced? 0, EEXIST if strut did not write it, or another errno. */
 static int check_one(int folder, list *self, const char *name) {
   struct stat found;
@@ -169,7 +176,7 @@ strut_status strut_ownership_check(const char *directory, const char *const *nam
                           "changed since; move it away, or give another name",
                           directory, names[i]);
     else if (code)
-      status = strut_file_fail(error, "write", directory, names[i], code);
+      status = cannot_write(error, directory, names[i], code);
   }
   strut_release(l.text);
   close(folder);
@@ -231,7 +238,7 @@ strut_status strut_stage_move(const char *stage, const char *directory, const ch
   strut_release(l.text);
   if (from >= 0) close(from);
   if (to >= 0) close(to);
-  return code ? strut_file_fail(error, "write", directory, at, code) : STRUT_OK;
+  return code ? cannot_write(error, directory, at, code) : STRUT_OK;
 }
 
 /* ---- measured data ---- */

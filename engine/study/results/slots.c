@@ -89,7 +89,7 @@ static strut_status load(strut_slots *slots, int64_t i, strut_error *error) {
   slots->block_rewritten = atomic_load(&slots->rewritten);
   int64_t got = strut_slots_pread(slots->descriptor, slots->block,
                                   (size_t)count * slots->layout.slot_bytes, offset_of(slots, i));
-  if (got < 0) return strut_slots_trouble(error, "read", slots->path, errno);
+  if (got < 0) return strut_file_fail(error, "read", slots->path, errno);
   slots->block_first = i;
   slots->block_count = got / (int64_t)slots->layout.slot_bytes;
   return STRUT_OK;
@@ -159,7 +159,7 @@ static strut_status begin(strut_slots *slots, const strut_slots_description *pla
   if (!header) return no_memory(error, slots->path);
   if (!strut_slots_pwrite(slots->descriptor, header, slots->layout.header_bytes, 0) ||
       (fsync(slots->descriptor) != 0 && errno != EINVAL))
-    return strut_slots_trouble(error, "write", slots->path, errno);
+    return strut_file_fail(error, "write", slots->path, errno);
   return STRUT_OK;
 }
 
@@ -197,8 +197,7 @@ static strut_status open_file(const char *path, const strut_slots_description *p
   strut_status status = s->path ? STRUT_OK : no_memory(error, path);
   if (status == STRUT_OK) {
     s->descriptor = open(path, plan ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0666);
-    if (s->descriptor < 0)
-      status = strut_slots_trouble(error, plan ? "write" : "read", path, errno);
+    if (s->descriptor < 0) status = strut_file_fail(error, plan ? "write" : "read", path, errno);
   }
   if (status == STRUT_OK) status = plan ? resume(s, plan, error) : look(s, error);
   if (status == STRUT_OK) status = prepare(s, error);
@@ -345,7 +344,7 @@ strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_resu
                                       : "is open for reading only");
   fill_slot(slots, point, row, slot);
   if (!strut_slots_pwrite(slots->descriptor, slot, slots->layout.slot_bytes, offset_of(slots, i)))
-    return strut_slots_trouble(error, "write", slots->path, errno);
+    return strut_file_fail(error, "write", slots->path, errno);
   atomic_store_explicit(&slots->unsynced, true, memory_order_relaxed);
   if (slots->retried) atomic_fetch_add(&slots->rewritten, 1);
   mark(slots, i, (uint32_t)row->status);
@@ -356,7 +355,7 @@ strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_resu
 strut_status strut_slots_sync(strut_slots *slots, strut_error *error) {
   if (!atomic_exchange(&slots->unsynced, false)) return STRUT_OK;
   if (fsync(slots->descriptor) == 0 || errno == EINVAL) return STRUT_OK;
-  return strut_slots_trouble(error, "write", slots->path, errno);
+  return strut_file_fail(error, "write", slots->path, errno);
 }
 
 /* The bytes of slot i, from the block in memory or from the file; NULL if it is missing. */

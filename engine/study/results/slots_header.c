@@ -26,14 +26,6 @@ typedef struct fixed_part {
 
 _Static_assert(sizeof(fixed_part) == 88 + STRUT_STUDY_HASH, "no gaps in what is written");
 
-strut_status strut_slots_trouble(strut_error *error, const char *what, const char *path, int code) {
-  char reason[128];
-  if (strerror_r(code, reason, sizeof reason) != 0) {
-    snprintf(reason, sizeof reason, "error %d", code);
-  }
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%s': %s", what, path, reason);
-}
-
 int64_t strut_slots_pread(int descriptor, void *bytes, size_t length, int64_t offset) {
   size_t done = 0;
   while (done < length) {
@@ -176,7 +168,7 @@ strut_status strut_slots_read_header(const strut_slots_file *file, strut_slots_d
   bool small = fstat(descriptor, &found) == 0 && found.st_size <= (off_t)file->most;
   *torn = false;
   int64_t got = strut_slots_pread(descriptor, &fixed, sizeof fixed, 0);
-  if (got < 0) return strut_slots_trouble(error, "read", path, errno);
+  if (got < 0) return strut_file_fail(error, "read", path, errno);
   *torn = small && is_torn((unsigned char *)&fixed, got);
   bool ours = memcmp(fixed.magic, MAGIC, sizeof MAGIC) == 0;
   if (got < (int64_t)sizeof fixed || !ours)
@@ -194,7 +186,7 @@ strut_status strut_slots_read_header(const strut_slots_file *file, strut_slots_d
   unsigned char *header = strut_arena_allocate(arena, (size_t)fixed.header_bytes, 1);
   if (!header) return strut_fail(error, STRUT_NO_MEMORY, "out of memory reading '%s'", path);
   got = strut_slots_pread(descriptor, header, (size_t)fixed.header_bytes, 0);
-  if (got < 0) return strut_slots_trouble(error, "read", path, errno);
+  if (got < 0) return strut_file_fail(error, "read", path, errno);
   uint64_t checksum = fixed.checksum;
   fixed.checksum = 0;
   memcpy(header, &fixed, sizeof fixed);

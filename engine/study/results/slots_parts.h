@@ -43,8 +43,6 @@ strut_status strut_slots_compare(const char *path, const strut_slots_description
                                  const strut_slots_description *wanted, strut_error *error);
 /** Appends the header of a column of the table, and a comma. */
 void strut_study_table_add_name(strut_buffer *line, const strut_slot_column *column);
-/** STRUT_FILE_TROUBLE with the reason in errno's value `code`. */
-strut_status strut_slots_trouble(strut_error *error, const char *what, const char *path, int code);
 /**
  * Reads up to `length` bytes at `offset`: how many there were, or -1 with errno. Writes all, or
  * returns false with errno.

@@ -263,7 +263,7 @@ strut_status strut_shards_find(const char *directory, strut_shards_found *found,
   found->whole = access(whole, F_OK) == 0;
   DIR *open = opendir(folder);
   if (!open && errno == ENOENT) return STRUT_OK;
-  if (!open) return strut_slots_trouble(error, "read", folder, errno);
+  if (!open) return strut_file_fail(error, "read", folder, errno);
   strut_status status = STRUT_OK;
   strut_shard shard;
   for (const struct dirent *entry; status == STRUT_OK && (entry = readdir(open));)

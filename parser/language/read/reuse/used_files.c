@@ -378,13 +378,6 @@ strut_status strut_read_used_files(strut_document *document, strut_diagnostics *
 #define PATH_MAX 4096
 #endif
 
-static strut_status cannot_read(strut_error *error, const char *path, int code) {
-  char reason[128];
-  if (strerror_r(code, reason, sizeof reason) != 0)
-    snprintf(reason, sizeof reason, "error %d", code);
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot read '%.300s': %s", path, reason);
-}
-
 char *strut_folder_of(const char *path, strut_arena *arena) {
   const char *slash = strrchr(path, '/');
   if (!slash) return strut_arena_text(arena, ".", 1);
@@ -459,7 +452,7 @@ static strut_status read_bytes(int descriptor, size_t size, strut_safe_text *fil
   while (file->length <= size) {
     ssize_t got = read(descriptor, file->text + file->length, size + 1 - file->length);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return cannot_read(error, file->path, errno);
+    if (got < 0) return strut_file_fail(error, "read", file->path, errno);
     if (got == 0) break;
     file->length += (size_t)got;
   }
@@ -477,11 +470,11 @@ static strut_status read_below(const char *root, const char *below, size_t most,
   int code = errno;
   strut_status status;
   if (descriptor >= 0 && fstat(descriptor, &found) != 0) {
-    status = cannot_read(error, file->path, errno);
+    status = strut_file_fail(error, "read", file->path, errno);
   } else if ((descriptor >= 0 || found.st_nlink > 0) && !S_ISREG(found.st_mode)) {
     status = strut_fail(error, STRUT_BAD_SCENE, "'%.300s' is not a regular file", file->path);
   } else if (descriptor < 0) {
-    status = cannot_read(error, file->path, code);
+    status = strut_file_fail(error, "read", file->path, code);
   } else if (found.st_size > 0 && (uintmax_t)found.st_size > most) {
     status = strut_fail(error, STRUT_BAD_SCENE, "'%.300s' has %jd bytes, expected at most %zu",
                         file->path, (intmax_t)found.st_size, most);
@@ -514,9 +507,9 @@ strut_status strut_safe_read(const char *root, const char *from, const char *nam
   file->path = join(from, name);
   if (!file->path) return strut_no_memory(error, "");
   if (!realpath(root, top)) {
-    status = cannot_read(error, root, errno);
+    status = strut_file_fail(error, "read", root, errno);
   } else if (!realpath(file->path, real)) {
-    status = cannot_read(error, file->path, errno);
+    status = strut_file_fail(error, "read", file->path, errno);
   } else {
     const char *below = path_below(top, real);
     if (strcmp(top, real) == 0)
