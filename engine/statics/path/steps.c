@@ -199,6 +199,7 @@ enum { LOOKS = 4 };
 static const double WITHIN = 0.02;  /* of a step: what turns nearer to an end shows there */
 static const double SMALL = 0.2;    /* of the values at both ends: an extreme that may be zero */
 static const double GRAZING = 1e-4; /* likewise, one that is near enough */
+static const double NEUTRAL = 1e-8; /* of the largest eigenvalue: it may be zero all along */
 static const double WHOLE_STEP = 1.0;
 
 static bool is_within(double at) { return at > WITHIN && at < WHOLE_STEP - WITHIN; }
@@ -228,7 +229,6 @@ static strut_reading measure_between(strut_path_walk *walk, int32_t which, doubl
 static double find_switch_turn(strut_path_walk *walk, int32_t which) {
   double even = STRUT_PATH_EVEN * walk->system.size;
   strut_reading a = measure_between(walk, which, 0.0), c = measure_between(walk, which, WHOLE_STEP);
-  if (!isfinite(a.value) || !isfinite(c.value)) return WHOLE_STEP;
   bool begins = fabs(a.value) <= even && c.value < -even;
   if (!begins && !(a.value > even && c.value > even)) return WHOLE_STEP;
   strut_reading b = measure_between(walk, which, 0.5), vertex;
@@ -253,7 +253,7 @@ static double find_pair_of_limits(const strut_path_walk *walk) {
   strut_reading vertex = strut_vertex((strut_reading){0.0, from},
                                       (strut_reading){0.5, 1.5 * mean - 0.25 * (from + to)},
                                       (strut_reading){WHOLE_STEP, to});
-  bool turns = from * to > 0.0 && is_within(vertex.at) &&
+  bool turns = way_of(from) * way_of(to) > 0 && is_within(vertex.at) &&
                vertex.value * from < SMALL * from * (fabs(from) < fabs(to) ? from : to);
   return turns ? vertex.at : WHOLE_STEP;
 }
@@ -268,7 +268,7 @@ static double find_pair_of_zeros(const strut_path_walk *walk) {
                      (strut_reading){0.0, here}, (strut_reading){WHOLE_STEP, there});
     double small = fabs(here) < fabs(there) ? here : there;
     if (here * there > 0.0 && is_within(vertex.at) &&
-        fabs(small) > BLURRED * system->spectrum.noise &&
+        fabs(small) > NEUTRAL * system->spectrum.value[system->n - 1] &&
         vertex.value * small < SMALL * small * small)
       return vertex.at;
   }
