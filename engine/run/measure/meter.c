@@ -160,10 +160,6 @@ static const double SURE = 0.05;
 
 enum { MOST_TRIALS = 40 };
 
-typedef struct place {
-  double at, value; /* fraction of the part; value there */
-} place;
-
 static double range_of(const strut_meter *meter) { return meter->whole.high - meter->whole.low; }
 
 /* Does the lowest value count, or the highest? */
@@ -444,28 +440,24 @@ bool strut_meter_is_resolved(const strut_meter *meter, const strut_samples *samp
 }
 
 /* The vertex of the parabola through three points; NAN: there is none between the outer ones. */
-static place find_vertex(place a, place b, place c) {
-  double left = (b.value - a.value) / (b.at - a.at), right = (c.value - b.value) / (c.at - b.at);
-  double bend = (right - left) / (c.at - a.at);
-  double slope = left + bend * (b.at - a.at); /* at b */
-  double at = b.at - 0.5 * slope / bend;
-  if (!(at > a.at && at < c.at)) return (place){(double)NAN, (double)NAN};
-  return (place){at, b.value - 0.25 * slope * slope / bend};
+static strut_reading find_vertex(strut_reading a, strut_reading b, strut_reading c) {
+  strut_reading vertex = strut_vertex(a, b, c);
+  return vertex.at > a.at && vertex.at < c.at ? vertex : (strut_reading){(double)NAN, (double)NAN};
 }
 
 /* The extreme between a and c, of which b is the most extreme so far; sign: 1 of a maximum, -1 of a minimum. */
-static place refine_extreme(const strut_samples *samples, place a, place b, place c, double sign,
-                            double range) {
+static strut_reading refine_extreme(const strut_samples *samples, strut_reading a, strut_reading b,
+                                    strut_reading c, double sign, double range) {
   for (int k = 0; k < MOST_TRIALS; k++) {
-    place guess = find_vertex(a, b, c);
+    strut_reading guess = find_vertex(a, b, c);
     double wide = b.at - a.at > c.at - b.at ? a.at : c.at; /* the end farther off */
     double gap = fabs(guess.at - b.at), width = c.at - a.at;
     if (sign * (guess.value - b.value) <= GAINED * range) break;
     if (k % 3 == 2 || !(gap > 1e-9 * width)) guess.at = b.at + 0.381966 * (wide - b.at);
-    place next = {guess.at, samples->sample(samples->context, guess.at)};
+    strut_reading next = {guess.at, samples->sample(samples->context, guess.at)};
     if (isnan(next.value)) break;
     bool better = sign * (next.value - b.value) > 0.0;
-    place *near = next.at < b.at ? &a : &c, *far = next.at < b.at ? &c : &a;
+    strut_reading *near = next.at < b.at ? &a : &c, *far = next.at < b.at ? &c : &a;
     if (better)
       *far = b, b = next;
     else
@@ -475,7 +467,8 @@ static place refine_extreme(const strut_samples *samples, place a, place b, plac
 }
 
 /* When the target is passed between two points, by regula falsi that halves the end which stays. */
-static double find_arrival(const strut_samples *samples, double target, place a, place b) {
+static double find_arrival(const strut_samples *samples, double target, strut_reading a,
+                           strut_reading b) {
   double left = a.value - target, right = b.value - target;
   int side = 0;
   for (int k = 0; k < MOST_TRIALS && b.at - a.at > 1e-13 && left != 0.0; k++) {
@@ -498,7 +491,8 @@ static double find_arrival(const strut_samples *samples, double target, place a,
 }
 
 /* Moves on from one point to the next: extremes, increases, arrival. */
-static void pass_point(strut_meter *meter, const strut_samples *samples, place from, place to) {
+static void pass_point(strut_meter *meter, const strut_samples *samples, strut_reading from,
+                       strut_reading to) {
   note_value(meter, to.value);
   add_rise(meter, fmax(0.0, to.value - from.value));
   if (!awaits_arrival(meter) || !is_passed(meter, from.value, to.value)) return;
@@ -517,11 +511,12 @@ static double integrate_samples(const double *f, int last, bool squared) {
 
 /* An extreme near sample k, between its neighbours; beside the ends also that of the outer half. */
 static bool find_extreme(const strut_meter *meter, const strut_samples *samples, int k,
-                         place *extreme) {
+                         strut_reading *extreme) {
   int last = samples->count - 1;
-  place p[3];
-  for (int j = 0; j < 3; j++) p[j] = (place){(double)(k - 1 + j) / last, samples->value[k - 1 + j]};
-  place vertex = find_vertex(p[0], p[1], p[2]);
+  strut_reading p[3];
+  for (int j = 0; j < 3; j++)
+    p[j] = (strut_reading){(double)(k - 1 + j) / last, samples->value[k - 1 + j]};
+  strut_reading vertex = find_vertex(p[0], p[1], p[2]);
   if (isnan(vertex.at)) return false;
   double half = 0.5 / last, sign = vertex.value > p[1].value ? 1.0 : -1.0;
   if (vertex.value == p[1].value) sign = p[0].value < p[1].value ? 1.0 : -1.0;
@@ -535,8 +530,8 @@ static bool find_extreme(const strut_meter *meter, const strut_samples *samples,
     *extreme = refine_extreme(samples, p[0], p[1], p[2], sign, range_of(meter));
     return true;
   }
-  place first = {vertex.at, samples->sample(samples->context, vertex.at)};
-  place a = vertex.at < p[1].at ? p[0] : p[1], c = vertex.at < p[1].at ? p[1] : p[2];
+  strut_reading first = {vertex.at, samples->sample(samples->context, vertex.at)};
+  strut_reading a = vertex.at < p[1].at ? p[0] : p[1], c = vertex.at < p[1].at ? p[1] : p[2];
   if (!(sign * (first.value - fmax(sign * a.value, sign * c.value) * sign) > 0.0)) return false;
   *extreme = refine_extreme(samples, a, first, c, sign, range_of(meter));
   return true;
@@ -570,11 +565,11 @@ static void add_doubt(strut_meter *meter, const strut_samples *samples,
 void strut_meter_add(strut_meter *meter, const strut_samples *samples) {
   int last = samples->count - 1;
   strut_meter_stretch before = meter->whole;
-  place at = {0.0, samples->value[0]};
+  strut_reading at = {0.0, samples->value[0]};
   double passed = 0.0;                             /* the latest extreme */
   bool searched[STRUT_MOST_SAMPLES + 4] = {false}; /* two samples on: is an extreme known there? */
   for (int k = 1; k <= last; k++) {
-    place extreme, sample = {(double)k / last, samples->value[k]};
+    strut_reading extreme, sample = {(double)k / last, samples->value[k]};
     bool found = k < last && find_extreme(meter, samples, k, &extreme) && extreme.at > passed;
     if (found) passed = extreme.at;
     for (int j = k; found && j <= k + 4; j++) searched[j] = true;

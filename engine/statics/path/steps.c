@@ -199,25 +199,15 @@ enum { LOOKS = 4 };
 static const double WITHIN = 0.02;  /* of a step: what turns nearer to an end shows there */
 static const double SMALL = 0.2;    /* of the values at both ends: an extreme that may be zero */
 static const double GRAZING = 1e-4; /* likewise, one that is near enough */
+static const double NEUTRAL = 1e-8; /* of the largest eigenvalue: it may be zero all along */
 static const double WHOLE_STEP = 1.0;
-
-typedef struct place {
-  double at, value;
-} place;
-
-/* Where the parabola through three places turns, and its value there. */
-static place find_vertex(place a, place b, place c) {
-  double left = (b.value - a.value) / (b.at - a.at), right = (c.value - b.value) / (c.at - b.at);
-  double bend = (right - left) / (c.at - a.at), slope = left + bend * (b.at - a.at);
-  return (place){b.at - 0.5 * slope / bend, b.value - 0.25 * slope * slope / bend};
-}
 
 static bool is_within(double at) { return at > WITHIN && at < WHOLE_STEP - WITHIN; }
 
 enum { STOP = -1 }; /* in place of a switch: the coordinate at which the path stops */
 
 /* A switch on the cubic through both ends of the step: above 0 while it stays as it is. */
-static place measure_between(strut_path_walk *walk, int32_t which, double at) {
+static strut_reading measure_between(strut_path_walk *walk, int32_t which, double at) {
   strut_path_system *system = &walk->system;
   double length = strut_path_distance(walk, walk->next, walk->y), *point = walk->trial;
   memset(point, 0, strut_path_bytes(walk));
@@ -229,28 +219,27 @@ static place measure_between(strut_path_walk *walk, int32_t which, double at) {
     double ahead = strut_path_evaluate(system, point)
                        ? system->stop_at - system->latest.q[stop->coordinate]
                        : (double)NAN;
-    return (place){at, copysign(1.0, stop->displacement) * ahead};
+    return (strut_reading){at, copysign(1.0, stop->displacement) * ahead};
   }
   double value = strut_path_switch_value(system, which, point);
-  return (place){at, strut_path_switch_is_on(system, which) ? value : -value};
+  return (strut_reading){at, strut_path_switch_is_on(system, which) ? value : -value};
 }
 
 /* Where a switch is thrown and thrown back; or where it is farthest from a change that has just been. */
 static double find_switch_turn(strut_path_walk *walk, int32_t which) {
   double even = STRUT_PATH_EVEN * walk->system.size;
-  place a = measure_between(walk, which, 0.0), c = measure_between(walk, which, WHOLE_STEP);
-  if (!isfinite(a.value) || !isfinite(c.value)) return WHOLE_STEP;
+  strut_reading a = measure_between(walk, which, 0.0), c = measure_between(walk, which, WHOLE_STEP);
   bool begins = fabs(a.value) <= even && c.value < -even;
   if (!begins && !(a.value > even && c.value > even)) return WHOLE_STEP;
-  place b = measure_between(walk, which, 0.5), vertex;
+  strut_reading b = measure_between(walk, which, 0.5), vertex;
   double small = fmin(a.value, c.value);
   for (int k = 0; k < LOOKS; k++) {
-    vertex = find_vertex(a, b, c);
+    vertex = strut_vertex(a, b, c);
     if (!(vertex.at > a.at && vertex.at < c.at) || begins != (vertex.value > b.value)) break;
     if (!begins && !(vertex.value < SMALL * small)) break;
     vertex = measure_between(walk, which, vertex.at);
     if (begins ? vertex.value > even : vertex.value < GRAZING * small) return vertex.at;
-    place *end = vertex.at < b.at ? &c : &a;
+    strut_reading *end = vertex.at < b.at ? &c : &a;
     *end = b, b = vertex;
   }
   return WHOLE_STEP;
@@ -261,9 +250,10 @@ static double find_pair_of_limits(const strut_path_walk *walk) {
   int32_t n = walk->system.n;
   double from = walk->tangent[n], to = walk->next_tangent[n];
   double mean = (walk->next[n] - walk->y[n]) / strut_path_distance(walk, walk->next, walk->y);
-  place vertex = find_vertex((place){0.0, from}, (place){0.5, 1.5 * mean - 0.25 * (from + to)},
-                             (place){WHOLE_STEP, to});
-  bool turns = from * to > 0.0 && is_within(vertex.at) &&
+  strut_reading vertex = strut_vertex((strut_reading){0.0, from},
+                                      (strut_reading){0.5, 1.5 * mean - 0.25 * (from + to)},
+                                      (strut_reading){WHOLE_STEP, to});
+  bool turns = way_of(from) * way_of(to) > 0 && is_within(vertex.at) &&
                vertex.value * from < SMALL * from * (fabs(from) < fabs(to) ? from : to);
   return turns ? vertex.at : WHOLE_STEP;
 }
@@ -273,11 +263,12 @@ static double find_pair_of_zeros(const strut_path_walk *walk) {
   const strut_path_system *system = &walk->system;
   for (int32_t i = 0; i < system->n && walk->earlier > 0.0; i++) {
     double here = walk->values[i], there = system->spectrum.value[i];
-    place vertex = find_vertex((place){-walk->earlier / walk->step, walk->earlier_values[i]},
-                               (place){0.0, here}, (place){WHOLE_STEP, there});
+    strut_reading vertex =
+        strut_vertex((strut_reading){-walk->earlier / walk->step, walk->earlier_values[i]},
+                     (strut_reading){0.0, here}, (strut_reading){WHOLE_STEP, there});
     double small = fabs(here) < fabs(there) ? here : there;
     if (here * there > 0.0 && is_within(vertex.at) &&
-        fabs(small) > BLURRED * system->spectrum.noise &&
+        fabs(small) > NEUTRAL * system->spectrum.value[system->n - 1] &&
         vertex.value * small < SMALL * small * small)
       return vertex.at;
   }
