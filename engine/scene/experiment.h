@@ -106,6 +106,7 @@ typedef struct strut_derived_by {
 
 /** The accuracy of a run whose scene has no solver, relative. */
 #define STRUT_USUAL_ACCURACY 0.01
+#define STRUT_MOST_ACCURACY 0.2
 
 /** Start, method, duration and measurements of an experiment. */
 typedef struct strut_experiment {

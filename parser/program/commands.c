@@ -283,9 +283,14 @@ static strut_status unknown_option(const strut_arguments *to, const char *word) 
     meant = "animate";
   }
   if (!meant) meant = strut_did_you_mean(name, option_name_at, to->command);
-  return with_help(to, strut_usage_error(to, "unknown option '--%s'%s%s%s", name,
-                                         meant ? "; did you mean '--" : "", meant ? meant : "",
-                                         meant ? "'?" : ""));
+  const bool word = meant && strncmp(meant, name, length) == 0 && meant[length] == '-';
+  return with_help(to,
+                   strut_usage_error(to, "unknown option '--%s'%s%s%s%s%s", name,
+                                     meant ? "; did you mean '--" : "", meant ? meant : "",
+                                     word ? "', or of a parameter '--set " : "", word ? name : "",
+                                     word    ? "=VALUE'?"
+                                     : meant ? "'?"
+                                             : ""));
 }
 
 /* One --set or --vary: splits NAME=VALUE in place. */
@@ -309,7 +314,10 @@ static strut_status add_override(const strut_option *option, char *text, strut_a
 
 static strut_status add_model(const char *text, strut_arguments *to) {
   if (!to->command->model || (to->model && !to->command->many))
-    return with_help(to, strut_usage_error(to, "unexpected argument '%s'", text));
+    return with_help(to, strut_usage_error(to, "unexpected argument '%s'%s", text,
+                                           to->override_count || to->varied_count
+                                               ? "; a value with a space is quoted: NAME='20 Hz'"
+                                               : ""));
   if (!to->model) to->model = text;
   to->models[to->model_count++] = text;
   return STRUT_OK;

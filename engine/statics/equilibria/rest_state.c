@@ -201,8 +201,9 @@ static strut_status report_unknown(const strut_scene *scene, const char *name, s
   for (size_t i = 0; i < scene->configuration_count; i++)
     strut_buffer_add(&names, ", %s", scene->configurations[i].name);
   strut_fail(error, STRUT_USAGE,
-             "unknown configuration '%.100s'; choose one of: start, drawn%.300s", name,
-             names.text ? names.text : "");
+             "unknown configuration '%.100s'; choose one of: start, drawn%.300s, or what 'strut "
+             "equilibria' lists",
+             name, names.text ? names.text : "");
   strut_release(names.text);
   return STRUT_USAGE;
 }

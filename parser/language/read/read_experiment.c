@@ -393,6 +393,11 @@ void strut_read_experiment(strut_reader *reader) {
       reader->purpose == STRUT_FOR_RUN &&
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER)->state == STRUT_ABSENT;
   if (experiment->accuracy_assumed) experiment->accuracy = STRUT_USUAL_ACCURACY;
+  const strut_tree *accuracy = strut_given(&reader->solver, STRUT_KEY_SOLVER_ACCURACY);
+  if (accuracy && experiment->accuracy > STRUT_MOST_ACCURACY)
+    strut_report_error(reader, accuracy->place,
+                       "'accuracy' of the solver must be at most 20 %%, found %g %%; 1 %% is 0.01",
+                       100.0 * experiment->accuracy);
   choose_settling_step(reader);
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))

@@ -188,7 +188,8 @@ typedef struct strut_command {
 /* Ranges of numbers. */
 #define STRUT_ABOVE_ZERO .low = DBL_MIN, .high = HUGE_VAL, .expected = "must be greater than 0"
 #define STRUT_ACCURACY_RANGE                                                                       \
-  .low = DBL_MIN, .high = 1, .expected = "must be above 0 and at most 1, that is 100%"
+  .low = DBL_MIN, .high = STRUT_MOST_ACCURACY,                                                     \
+  .expected = "must be above 0 and at most 20%; 1% is 0.01"
 
 /** The i-th row of a table (or NULL), those of its tables included; NULL after the last. */
 const strut_option *strut_option_row(const strut_option *table, size_t i);
