@@ -284,13 +284,11 @@ static strut_status unknown_option(const strut_arguments *to, const char *word) 
   }
   if (!meant) meant = strut_did_you_mean(name, option_name_at, to->command);
   const bool whole = meant && strncmp(meant, name, length) == 0 && meant[length] == '-';
-  return with_help(to,
-                   strut_usage_error(to, "unknown option '--%s'%s%s%s%s%s", name,
-                                     meant ? "; did you mean '--" : "", meant ? meant : "",
-                                     whole ? "', or of a parameter '--set " : "", word ? name : "",
-                                     word    ? "=VALUE'?"
-                                     : meant ? "'?"
-                                             : ""));
+  const char *end = whole ? "=VALUE'?" : meant ? "'?" : "";
+  return with_help(
+      to, strut_usage_error(to, "unknown option '--%s'%s%s%s%s%s", name,
+                            meant ? "; did you mean '--" : "", meant ? meant : "",
+                            whole ? "', or of a parameter '--set " : "", whole ? name : "", end));
 }
 
 /* One --set or --vary: splits NAME=VALUE in place. */
