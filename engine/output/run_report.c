@@ -112,7 +112,7 @@ static void show_steady(strut_shown *to, const cJSON *steady, bool checked) {
   else if (strcmp(kind, "transient") == 0)
     within = TEXT("not within %.0f periods", periods);
   else
-    within = TEXT("%s over %.0f periods; mean velocity known within %s", kind, periods, within);
+    within = TEXT("%s after %.0f periods; mean velocity known within %s", kind, periods, within);
   strut_show(to, "steady motion", within);
 }
 
@@ -149,8 +149,8 @@ static void show_all(strut_shown *to, const cJSON *summary, const char *node, bo
   if (page)
     cJSON_ArrayForEach(item, find(summary, "warnings")) show(to, item, "text", "warning", "");
   if (!page) show(to, find(summary, "settle"), "warning", "UNSTABLE START", "");
-  show(to, summary, "velocity", TEXT("mean velocity of %s", node ? node : "the centre of mass"),
-       "m/s");
+  show(to, summary, "velocity",
+       TEXT("mean velocity of %s along x", node ? node : "the centre of mass"), "m/s");
   show(to, summary, "velocity_spread", "spread of the velocity", "m/s");
   if (find(summary, "velocity_zero") && !accuracy)
     strut_show(to, "the velocity is", "zero up to rounding");

@@ -15,8 +15,10 @@
 /* What the caller has written, and what of it the model has. */
 typedef struct stepping_inputs {
   strut_scene *scene; /* whose loads and signals are changed */
-  double *given;      /* (count) rest, actuators, loads: what the caller writes */
+  double *given;      /* (count) rest, actuators, loads, rates: what the caller writes */
   double *applied;    /* (count) what the model has */
+  double *rates;      /* (actuators) of it */
+  double *points;     /* two times, and two values for each actuator: tables of values that move */
   size_t count, members, actuators, nodes;
   bool loads;            /* loads were asked for */
   int32_t first_signal;  /* of the signals that hold actuators, one for each */
@@ -27,15 +29,13 @@ typedef struct stepping_inputs {
   strut_arena arena;
 } stepping_inputs;
 
-/* Adds the signals that hold actuators to the scene, before it is compiled. */
+/* Adds the signals that hold actuators to the scene, before it is compiled: 0 until write_actuators. */
 static strut_status inputs_prepare(strut_setup *setup, strut_error *error) {
   strut_scene *scene = &setup->scene;
   size_t before = scene->signal_count, more = scene->actuator_count;
   strut_signal *signals = strut_arena_allocate(&scene->arena, before + more, sizeof *signals);
   if (!signals) return strut_no_memory(error, "");
   if (before) memcpy(signals, scene->signals, before * sizeof *signals);
-  for (size_t i = 0; i < more; i++)
-    signals[before + i] = (strut_signal){.kind = STRUT_CONSTANT, .stop = HUGE_VAL};
   scene->signals = signals;
   scene->signal_count = before + more;
   return STRUT_OK;
@@ -49,10 +49,12 @@ static strut_status inputs_create(strut_setup *setup, const strut_model *model, 
                           .actuators = scene->actuator_count,
                           .nodes = scene->node_count};
   in->first_signal = (int32_t)(scene->signal_count - scene->actuator_count);
-  in->count = in->members + in->actuators + 2 * in->nodes;
+  in->count = in->members + 2 * in->actuators + 2 * in->nodes;
   in->given = strut_arena_allocate(&in->arena, in->count, sizeof *in->given);
   in->applied = strut_arena_allocate(&in->arena, in->count, sizeof *in->applied);
-  if (!in->given || !in->applied) return strut_no_memory(error, "");
+  in->points = strut_arena_allocate(&in->arena, 2 + 2 * in->actuators, sizeof *in->points);
+  if (!in->given || !in->applied || !in->points) return strut_no_memory(error, "");
+  in->rates = in->applied + in->count - in->actuators;
   for (size_t i = 0; i < in->members; i++) in->given[i] = model->members.rest[i];
   for (size_t i = 0; i < in->actuators; i++) in->given[in->members + i] = (double)NAN;
   memcpy(in->applied, in->given, in->count * sizeof *in->given);
@@ -88,27 +90,26 @@ static bool add_loads(stepping_inputs *in, strut_model *model) {
 static strut_status check_inputs(const stepping_inputs *in, strut_error *error) {
   const strut_scene *scene = in->scene;
   const double *actuators = in->given + in->members, *loads = actuators + in->actuators;
+  const double *rates = loads + 2 * in->nodes;
   for (size_t i = 0; i < in->members; i++) {
+    const strut_member *member = &scene->members[i];
     bool changed = in->given[i] != in->applied[i], rigid = scene->bar_model == STRUT_BARS_RIGID;
+    const char *wrong = NULL;
     if (!(in->given[i] >= 0.0) || !isfinite(in->given[i]))
-      return strut_fail(error, STRUT_USAGE,
-                        "input 'rest': the rest length of member '%s' must be a number from 0 on",
-                        scene->members[i].name);
-    if (changed && !(in->given[i] > 0.0) && scene->members[i].axial_stiffness > 0.0)
-      return strut_fail(error, STRUT_USAGE,
-                        "input 'rest': the rest length of member '%s', which has an "
-                        "axial_stiffness, must be above zero",
-                        scene->members[i].name);
-    if (changed && rigid && scene->members[i].kind == STRUT_BAR)
-      return strut_fail(error, STRUT_USAGE,
-                        "input 'rest': member '%s' is a rigid bar, which keeps its length",
-                        scene->members[i].name);
+      wrong = "must be a number from 0 on";
+    else if (changed && !(in->given[i] > 0.0) && member->axial_stiffness > 0.0)
+      wrong = "must be above zero: the member has an axial_stiffness";
+    else if (changed && rigid && member->kind == STRUT_BAR)
+      wrong = "must stay: the member is a rigid bar";
+    if (wrong)
+      return strut_fail(error, STRUT_USAGE, "input 'rest': the rest length of member '%s' %s",
+                        member->name, wrong);
   }
   for (size_t i = 0; i < in->actuators; i++)
-    if (isinf(actuators[i]))
+    if (isinf(actuators[i]) || !isfinite(rates[i]))
       return strut_fail(error, STRUT_USAGE,
                         "input 'actuators': the value of '%s' must be a number, or NAN for the "
-                        "scene's signal",
+                        "scene's signal, and its rate a number",
                         scene->actuators[i].name);
   for (size_t i = 0; i < 2 * in->nodes; i++)
     if (!isfinite(loads[i]))
@@ -140,6 +141,28 @@ static void write_rest(const stepping_inputs *in, strut_model *model) {
   }
 }
 
+/* Long after any end: values move at their rates between two points of a table. */
+static const double FAR = 0x1p20; /* s */
+
+/* Lets values of actuators move from time t of their signals on. */
+static void begin_to_move(stepping_inputs *in, double t) {
+  in->points[0] = t;
+  in->points[1] = t + FAR;
+  for (size_t i = 0; i < in->actuators; i++) {
+    double *value = in->points + 2 + 2 * i;
+    value[0] = in->applied[in->members + i];
+    value[1] = value[0] + FAR * in->rates[i];
+  }
+}
+
+/* Values that have moved are what the caller finds. */
+static void follow_actuators(stepping_inputs *in, double t) {
+  for (size_t i = 0; i < in->actuators; i++)
+    if (in->rates[i] != 0.0)
+      in->given[in->members + i] = in->applied[in->members + i] =
+          in->points[2 + 2 * i] + in->rates[i] * (t - in->points[0]);
+}
+
 /* Actuators of rest lengths and those of forces stand in two tables, each in the scene's order. */
 static void write_actuators(const stepping_inputs *in, strut_model *model) {
   const strut_scene *scene = in->scene;
@@ -149,7 +172,13 @@ static void write_actuators(const stepping_inputs *in, strut_model *model) {
     double value = in->applied[in->members + i];
     int32_t held = in->first_signal + (int32_t)i;
     int32_t now = isnan(value) ? scene->actuators[i].signal : held;
-    scene->signals[held].amplitude = isnan(value) ? 0.0 : value;
+    bool moves = in->rates[i] != 0.0 && !isnan(value);
+    scene->signals[held] = (strut_signal){.kind = moves ? STRUT_TABLE : STRUT_CONSTANT,
+                                          .stop = HUGE_VAL,
+                                          .amplitude = isnan(value) ? 0.0 : value,
+                                          .point_count = 2,
+                                          .time = in->points,
+                                          .value = in->points + 2 + 2 * i};
     if (scene->actuators[i].force)
       tables.actuator_force[forces++].signal = now;
     else
@@ -184,6 +213,7 @@ static strut_status inputs_apply(stepping_inputs *in, strut_model *model, strut_
   for (size_t i = 0; i < in->members; i++)
     if (in->applied[i] != in->given[i]) state->latest->rest[i] = in->given[i];
   memcpy(in->applied, in->given, in->count * sizeof *in->given);
+  begin_to_move(in, t + state->time_offset);
   write_all(in, model);
   /* Constant loads do work along displacements only: what they have done so far stays. */
   if (in->loads) state->load_work_origin += strut_energy_load_potential(model, state) - loads;
@@ -195,24 +225,6 @@ static strut_status inputs_apply(stepping_inputs *in, strut_model *model, strut_
   state->latest->drive_time = (double)NAN;
   if (run->method->restart) run->method->restart(model, state, run->workspace, run->dt);
   return STRUT_OK;
-}
-
-/* ---- inputs of a snapshot ---- */
-
-static double *inputs_store(const stepping_inputs *in) {
-  double *stored = strut_allocate(2 * in->count + 1, sizeof *stored);
-  if (!stored) return NULL;
-  memcpy(stored, in->given, in->count * sizeof *stored);
-  memcpy(stored + in->count, in->applied, in->count * sizeof *stored);
-  stored[2 * in->count] = in->work;
-  return stored;
-}
-
-static void inputs_restore(stepping_inputs *in, strut_model *model, const double *stored) {
-  memcpy(in->given, stored, in->count * sizeof *stored);
-  memcpy(in->applied, stored + in->count, in->count * sizeof *stored);
-  in->work = stored[2 * in->count];
-  write_all(in, model);
 }
 
 /* ---- stepping ---- */
@@ -243,8 +255,8 @@ struct strut_stepping_snapshot {
   strut_state state;
   int64_t stop;
   strut_status status;
-  double *inputs;        /* inputs_store */
-  void *arena, *measure; /* strut_arena_store: of the state, of what is measured */
+  double input_work;
+  void *inputs, *arena, *measure; /* strut_arena_store: with the state's, with what is measured */
 };
 
 static uint64_t next_identity(void) {
@@ -257,8 +269,7 @@ static strut_status make_plain(strut_experiment *experiment, bool recorded, stru
   if (!(experiment->step > 0.0))
     return strut_fail(error, STRUT_USAGE,
                       "the scene leaves its step to be chosen: a simulation needs the option "
-                      "'step', such as 0.1 ms, and with dry friction 'integrator', such as "
-                      "rk4-events");
+                      "'step', such as 0.1 ms");
   experiment->accuracy = 0.0;
   experiment->steady.wanted = false;
   if (recorded) return STRUT_OK;
@@ -353,6 +364,7 @@ strut_status strut_stepping_advance(strut_stepping *stepping, int64_t steps, str
   }
   int64_t done = stepping->run.state->step, most = stepping->run.steps - done;
   strut_status status = step_to(stepping, done + (steps < most ? steps : most));
+  follow_actuators(in, strut_run_time(&stepping->run) + stepping->run.state->time_offset);
   refresh(stepping);
   if (!status) return STRUT_OK;
   if (error) *error = stepping->error;
@@ -394,16 +406,12 @@ const strut_record_channel *strut_stepping_channel(strut_stepping *stepping, str
 /* Loads become terms of the model only where they are asked for. */
 double *strut_stepping_input(strut_stepping *stepping, strut_input input, size_t *count) {
   stepping_inputs *in = &stepping->inputs;
-  switch (input) {
-    case STRUT_INPUT_REST: *count = in->members; return in->given;
-    case STRUT_INPUT_ACTUATORS: *count = in->actuators; return in->given + in->members;
-    case STRUT_INPUT_LOAD:
-      if (!in->loads && !add_loads(in, stepping->model)) return NULL;
-      *count = 2 * in->nodes;
-      return in->given + in->members + in->actuators;
-    case STRUT_INPUTS: break;
-  }
-  return NULL;
+  const size_t counts[STRUT_INPUTS] = {in->members, in->actuators, 2 * in->nodes, in->actuators};
+  double *given = in->given;
+  if (input == STRUT_INPUT_LOAD && !in->loads && !add_loads(in, stepping->model)) return NULL;
+  for (int i = 0; i < (int)input; i++) given += counts[i];
+  *count = counts[input];
+  return given;
 }
 
 double strut_stepping_input_work(const strut_stepping *stepping) { return stepping->inputs.work; }
@@ -424,16 +432,18 @@ strut_stepping_snapshot *strut_stepping_store(strut_stepping *stepping) {
                                         .run = stepping->run,
                                         .state = *state,
                                         .stop = stepping->stop,
-                                        .status = stepping->status};
+                                        .status = stepping->status,
+                                        .input_work = stepping->inputs.work};
   snapshot->arena = strut_allocate(strut_arena_stored_size(&state->arena), 1);
   snapshot->measure = strut_allocate(strut_arena_stored_size(measured), 1);
-  snapshot->inputs = inputs_store(&stepping->inputs);
+  snapshot->inputs = strut_allocate(strut_arena_stored_size(&stepping->inputs.arena), 1);
   if (!snapshot->arena || !snapshot->measure || !snapshot->inputs) {
     strut_stepping_snapshot_free(snapshot);
     return NULL;
   }
   strut_arena_store(&state->arena, snapshot->arena);
   strut_arena_store(measured, snapshot->measure);
+  strut_arena_store(&stepping->inputs.arena, snapshot->inputs);
   return snapshot;
 }
 
@@ -441,7 +451,9 @@ bool strut_stepping_restore(strut_stepping *stepping, const strut_stepping_snaps
   if (snapshot->identity != stepping->identity) return false;
   strut_state *state = stepping->run.state;
   strut_arena arena = state->arena, measured = stepping->run.measure.arena; /* may have grown */
-  inputs_restore(&stepping->inputs, stepping->model, snapshot->inputs);
+  strut_arena_restore(&stepping->inputs.arena, snapshot->inputs);
+  stepping->inputs.work = snapshot->input_work;
+  write_all(&stepping->inputs, stepping->model);
   stepping->run = snapshot->run;
   stepping->run.measure.arena = measured;
   stepping->stop = snapshot->stop;

@@ -21,6 +21,7 @@ typedef enum strut_input {
   STRUT_INPUT_REST,      /* (members) rest lengths, to which drives are added [m] */
   STRUT_INPUT_ACTUATORS, /* (actuators) the signal's value; NAN: as the scene says */
   STRUT_INPUT_LOAD,      /* (nodes, 2) forces beside the scene's [N] */
+  STRUT_INPUT_RATES, /* (actuators) at which these values move from the next step on, per second */
   STRUT_INPUTS
 } strut_input;
 

@@ -63,7 +63,10 @@ TEST(steps_do_not_depend_on_their_division) {
     strutlib_scene *scene = open_for(methods[m]);
     OWN_POINTER(strutlib_simulation) whole = open_by(scene, methods[m], "0.02 ms");
     OWN_POINTER(strutlib_simulation) parts = open_by(scene, methods[m], "0.02 ms");
-    strutlib_close(scene); /* simulations stay */
+    strutlib_close(scene);      /* simulations stay */
+    for (int i = 0; i < 4; i++) /* the oscillator has no drive */
+      strutlib_simulation_set(i % 2 ? whole : parts, i < 2 ? "actuators" : "rates", "drive", 1e-4,
+                              NULL);
     advance(whole, 1500);
     for (long done = 0, i = 0; done < 1500; i++) {
       long next = 1 + i % 7;
@@ -140,14 +143,14 @@ static double open_balance(const char *step, double *worked) {
   OWN_POINTER(strutlib_simulation) s = open_by(scene, "rk4-events", step);
   const double *energy = channel(s, "energy", &n);
   double *rest = input(s, "rest", &k), *hold = input(s, "actuators", &q),
-         *load = input(s, "load", &l);
+         *load = input(s, "load", &l), *rate = input(s, "rates", &q);
   double drawn = rest[k - 1], begin = balance(energy);
   long steps = lround(0.005 / strutlib_simulation_step(s));
   assert_true(isnan(hold[0]) && load[0] == 0.0);
   for (int i = 0; i < 40; i++) {
     rest[k - 1] = drawn * (i % 2 ? 1.01 : 0.99);
     hold[0] = i % 5 ? 1e-4 * i / 40 : (double)NAN;
-    load[2] = i % 3 - 1;
+    load[2] = i % 3 - 1, rate[0] = 0.01 * (i % 2);
     advance(s, steps);
   }
   *worked = strutlib_simulation_input_work(s);

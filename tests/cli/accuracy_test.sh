@@ -36,7 +36,7 @@ holds '.steady.kind == "periodic" and .steady.periods <= 60' '(.velocity | fabs)
 
 # Slowly driven on rough ground it creeps in a way that no period repeats: that is reported, with an error of its own, or,
 # where more is wanted, sought for some time. adaptive's mean over the last 100 of 500 periods is 0.0103 mm/s.
-shows 0 "  creeping over" run "$crawler" --set frequency="1 Hz" --set friction=0.5 --steady 0.5% --accuracy 0.5%
+shows 0 "  creeping after" run "$crawler" --set frequency="1 Hz" --set friction=0.5 --steady 0.5% --accuracy 0.5%
 out_has "for this model: it only creeps"
 expect 0 run "$crawler" --set frequency="1 Hz" --set friction=0.5 --steady 0.5% --accuracy 0.5% --json
 holds '.steady.kind == "creeping" and .accuracy.kept'

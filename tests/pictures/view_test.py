@@ -112,7 +112,7 @@ def crawler():
     velocity = json.loads(testing.read("crawl/summary.json"))["velocity"]
     rows = {row["label"]: row["value"] for row in page.data["summary"]}
     check(rows["run"] == "completed" and
-          rows["mean velocity of the centre of mass"].startswith(f"{1e3 * velocity:.4g} mm/s"),
+          rows["mean velocity of the centre of mass along x"].startswith(f"{1e3 * velocity:.4g} mm/s"),
           f"summary: {rows}")
     run("view", "crawl", "-o", "again.html", "-q")
     check(testing.read("again.html") == page.text.encode(), "not the same bytes twice")

@@ -169,18 +169,18 @@ TEST(the_table) {
   RELEASED char *text = strut_summary_table(&summary, &scene, 0);
   static const char *const expected[] = {
       "Cr\xc3\xa4wler: completed\n",
-      "  mean velocity of the centre of mass  9.781 mm/s\n",
-      "  spread of the velocity               2 um/s\n  measured from                        100 "
-      "s\n",
-      "  duration                             110 s\n  settling time                        700 "
-      "ms\n",
-      "  steps                                1100000\n  step                                 100 "
-      "us\n",
-      "  largest stable step                  512.3 us\n",
-      "  computed                             4400000 force evaluations in 250 ms, 227.3 ns per "
-      "step\n",
-      "  energy, kinetic                      142.9 mJ\n",
-      "  lost to friction                     10 J\n",
+      "  mean velocity of the centre of mass along x  9.781 mm/s\n",
+      "  spread of the velocity                       2 um/s\n"
+      "  measured from                                100 s\n",
+      "  duration                                     110 s\n"
+      "  settling time                                700 ms\n",
+      "  steps                                        1100000\n"
+      "  step                                         100 us\n",
+      "  largest stable step                          512.3 us\n",
+      "  computed                                     4400000 force evaluations in 250 ms, "
+      "227.3 ns per step\n",
+      "  energy, kinetic                              142.9 mJ\n",
+      "  lost to friction                             10 J\n",
       "  n1             300 mm",
       "  n1             0.3333      1.1 mm\n"};
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)

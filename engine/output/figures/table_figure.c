@@ -106,9 +106,11 @@ static size_t rows_of(const maker *self, size_t panel, size_t curve, size_t *row
 
 /* A grey area, which the legend names after the text that rows have there. */
 static void add_band(maker *self, strut_panel *panel, double low, double high) {
-  strut_add_band(
-      &self->page, panel, fmin(low, high), fmax(low, high),
-      strut_figure_text(&self->page, "%s %s", column_of(self, self->band)->name, self->band_text));
+  bool several = self->by != STRUT_NO_COLUMN && self->curves.count > 1;
+  strut_add_band(&self->page, panel, fmin(low, high), fmax(low, high),
+                 strut_figure_text(&self->page, "%s %s%s%s", column_of(self, self->band)->name,
+                                   self->band_text, several ? " of at least one " : "",
+                                   several ? column_of(self, self->by)->name : ""));
 }
 
 static bool is_in_band(const maker *self, size_t row) {

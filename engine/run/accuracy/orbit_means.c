@@ -172,9 +172,9 @@ void strut_orbit_solve_explain_mean(const strut_orbit_solve *solve, char *text, 
              step, 0.5 * step);
   snprintf(
       text, size,
-      "%s: the mean velocity over the latter half of %lld periods is known to %.2g m/s, and that "
-      "of other runs "
-      "differs by %.2g m/s%s; more periods or a larger budget narrow it",
+      "%s: the mean velocity over the latter half of the last %lld periods is known to %.2g m/s, "
+      "and "
+      "that of other runs differs by %.2g m/s%s; more periods or a larger budget narrow it",
       how, (long long)mean->periods, solve->error, mean->apart,
       mean->disputed ? ", more than they scatter: there are two motions, or a long transient" : "");
 }

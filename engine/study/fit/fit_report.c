@@ -415,7 +415,8 @@ static const char *unit_of_match(const strut_fit_match *match) {
   X("chi_square", "1", IF(!isnan(r->chi_square), NUMBER(r->chi_square)),                           \
     "sum of squared residuals in units of the noise", .label = {"chi square"})                     \
   X("lag", "1", IF(!isnan(r->lag), NUMBER(r->lag)),                                                \
-    "correlation of successive residuals, in its standard errors", .label = {"correlation"})
+    "correlation of successive residuals, in its standard errors",                                 \
+    .label = {"autocorrelation in standard errors"})
 STRUT_VALUES_HERE(residual_values, RESIDUALS, const strut_fit_residuals *r = of->at)
 
 static const char *variable_name(const strut_result_object *of, size_t i) {

@@ -476,6 +476,7 @@ STRUTLIB_API int strutlib_simulation_array(strutlib_simulation *simulation, cons
  *   "rest" (members): rest lengths [m], to which a driven member's signal is added;
  *   "actuators" (actuators): what the signal is, in its unit; NAN (as at the beginning): as the
  *     scene says;
+ *   "rates" (actuators): how fast these values move [per second], 0 at the beginning; a damper uses it;
  *   "load" (nodes, 2): forces on nodes besides those of the scene [N], 0 at the beginning.
  * Values that are not finite, or rest lengths below 0, make the next advance fail with STRUTLIB_USAGE, without a step.
  */

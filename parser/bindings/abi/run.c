@@ -182,10 +182,6 @@ struct strutlib_simulation {
   strut_sink *sink;          /* of its motion */
 };
 
-struct strutlib_snapshot {
-  strut_stepping_snapshot *stored;
-};
-
 /* The result has a scene and a model of its own, since inputs change those of the simulation. */
 static strut_status begin_recording(abi_call *call, const strutlib_scene *scene,
                                     strutlib_simulation *simulation, strut_error *what) {
@@ -295,7 +291,7 @@ int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,
 
 /* A strut_input; STRUT_INPUTS where none has the name. */
 static int input_named(const char *name) {
-  static const char *const names[STRUT_INPUTS] = {"rest", "actuators", "load"};
+  static const char *const names[STRUT_INPUTS] = {"rest", "actuators", "load", "rates"};
   int i = 0;
   while (i < STRUT_INPUTS && strcmp(names[i], name) != 0) i++;
   return i;
@@ -315,7 +311,7 @@ int strutlib_simulation_input(strutlib_simulation *simulation, const char *name,
 /* Index of "m8", "drive" or "n1.x" in an input, or -1. */
 static long index_of(const strut_scene *scene, int input, const char *name) {
   if (input == STRUT_INPUT_REST) return strut_thing_find(scene, STRUT_THING_MEMBER, name);
-  if (input == STRUT_INPUT_ACTUATORS) return strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
+  if (input != STRUT_INPUT_LOAD) return strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
   for (size_t i = 0; i < scene->node_count; i++) {
     size_t length = strlen(scene->nodes[i].name);
     if (strncmp(name, scene->nodes[i].name, length) != 0) continue;
@@ -335,7 +331,7 @@ int strutlib_simulation_set(strutlib_simulation *simulation, const char *input, 
   int which = input_named(input);
   if (which == STRUT_INPUTS)
     return abi_fail(error, STRUTLIB_USAGE,
-                    "there is no input '%s'; expected rest, actuators or load", input);
+                    "there is no input '%s'; expected rest, actuators, load or rates", input);
   long index = index_of(&simulation->setup.scene, which, name);
   if (index < 0) return abi_fail(error, STRUTLIB_USAGE, "input '%s' has no '%s'", input, name);
   double *data = strut_stepping_input(simulation->stepping, (strut_input)which, &count);
@@ -344,18 +340,15 @@ int strutlib_simulation_set(strutlib_simulation *simulation, const char *input, 
   return STRUTLIB_OK;
 }
 
-/* ---- snapshots ---- */
+/* ---- snapshots: strutlib_snapshot is the engine's own ---- */
 
 strutlib_snapshot *strutlib_simulation_snapshot(const strutlib_simulation *simulation,
                                                 strutlib_error **error) {
   if (abi_lacks(error, simulation, "simulation")) return NULL;
   if (error) *error = NULL;
-  strutlib_snapshot *snapshot = strut_allocate(1, sizeof *snapshot);
-  if (snapshot) snapshot->stored = strut_stepping_store(simulation->stepping);
-  if (snapshot && snapshot->stored) return snapshot;
-  strut_release(snapshot);
-  abi_no_memory(error);
-  return NULL;
+  strut_stepping_snapshot *stored = strut_stepping_store(simulation->stepping);
+  if (!stored) abi_no_memory(error);
+  return (strutlib_snapshot *)stored;
 }
 
 int strutlib_simulation_restore(strutlib_simulation *simulation, const strutlib_snapshot *snapshot,
@@ -363,7 +356,7 @@ int strutlib_simulation_restore(strutlib_simulation *simulation, const strutlib_
   if (abi_lacks(error, simulation, "simulation") || abi_lacks(error, snapshot, "snapshot"))
     return STRUTLIB_USAGE;
   if (error) *error = NULL;
-  if (!strut_stepping_restore(simulation->stepping, snapshot->stored))
+  if (!strut_stepping_restore(simulation->stepping, (const strut_stepping_snapshot *)snapshot))
     return abi_fail(error, STRUTLIB_USAGE, "the snapshot is of another simulation");
   if (simulation->recorded) {
     run_detail *run = simulation->recorded->detail;
@@ -373,7 +366,5 @@ int strutlib_simulation_restore(strutlib_simulation *simulation, const strutlib_
 }
 
 void strutlib_snapshot_free(strutlib_snapshot *snapshot) {
-  if (!snapshot) return;
-  strut_stepping_snapshot_free(snapshot->stored);
-  strut_release(snapshot);
+  strut_stepping_snapshot_free((strut_stepping_snapshot *)snapshot);
 }

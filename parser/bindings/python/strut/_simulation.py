@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 from . import _strut
 from ._results import Run
@@ -33,7 +33,22 @@ def controlled(sim: Simulation, until: float, controller: Callable[[Simulation],
     return sim.finish()
 
 
-_INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
+_INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes", "rates": "actuators"}
+
+
+class Held(Named):
+    """Values of actuators: held["drive"] = value, or value, rate."""
+
+    __slots__ = ("_rates",)
+
+    def __init__(self, array: Any, names: Sequence[str], rates: Named) -> None:
+        super().__init__(array, names)
+        object.__setattr__(self, "_rates", rates)
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        value, rate = value if type(key) is str and type(value) is tuple else (value, 0.0)
+        super().__setitem__(key, value)
+        self._rates[key] = rate
 
 
 class Simulation(Frozen):
@@ -42,9 +57,11 @@ class Simulation(Frozen):
     Arrays are live: they follow every advance; copy() what shall stay. They are the channels that a scene
     can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), com.x, energy, ...
     Inputs are written at any time, and hold from the next advance on: rest (members) [m], actuators (in
-    their unit; NAN: as the scene says), load (nodes, 2) [N]:
+    their unit; NAN: as the scene says), load (nodes, 2) [N]. Dampers do not see a value that only jumps: write an
+    actuator's rate beside it, at which it then moves:
 
         sim.rest["m8"] = sim.rest0["m8"] + 0.3e-3
+        sim.actuators["drive"] = 1e-3, 0.05
         sim.advance(10)
         print(sim.time, sim.velocity["n1"][0])
     """
@@ -107,7 +124,8 @@ class Simulation(Frozen):
         if array is None:
             raise AttributeError(f"this simulation has no {name}")
         array = numpy().asarray(array)
-        live = Named(array, self._scene.names(kind))
+        names = self._scene.names(kind)
+        live = Held(array, names, self.rates) if name == "actuators" else Named(array, names)
         self.__dict__[name] = live
         return live
 

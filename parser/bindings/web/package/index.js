@@ -348,7 +348,7 @@ export class Simulation extends Owner {
     return (place, ...to) => module()["_strutlib_simulation_" + what](this.handle, place.text(name), ...to);
   }
   array(name) { return arrayOf(this.#find("array", name)); }
-  /** What is written into an input, "rest", "actuators" or "load", as array() has it. */
+  /** What is written into an input, "rest", "actuators", "load" or "rates", as array() has it. */
   input(name) { return arrayOf(this.#find("input", name)); }
   /** All numbers of an input, in the order of C. */
   write(name, numbers) {
