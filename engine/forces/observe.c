@@ -50,7 +50,7 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
     const double *place = surface->moves && motion ? motion[surface->ground].place : NULL;
     double point[2] = {q[0] - (place ? place[0] : 0.0), q[1] - (place ? place[1] : 0.0)};
     strut_contact_pose pose;
-    if (surface->pieces > STRUT_FEW_PIECES) {
+    if (surface->index) {
       strut_surface_lowest(surface, point, &pose.gap);
       k += surface->pieces - 1;
     } else {

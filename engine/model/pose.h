@@ -203,6 +203,11 @@ static inline strut_law_ground_numbers strut_contact_numbers(const strut_contact
   return (strut_law_ground_numbers){-contact->stiffness, -contact->damping, contact->dissipation};
 }
 
+/*
+ * Which facet of a surface is nearest to a point, and which pieces of a profile are near: by trees of bounds
+ * where there are many, with the answers of a search through all of them, ties included.
+ */
+
 /** Signed distance of a point from the line of a facet [m]. */
 static inline double strut_facet_across(const strut_facet *facet, const double p[2]) {
   return (p[0] - facet->point[0]) * facet->axes.normal[0] +
@@ -215,9 +220,28 @@ static inline double strut_facet_along(const strut_facet *facet, const double p[
          (p[1] - facet->point[1]) * facet->axes.tangent[1];
 }
 
+/** The point of a facet that is nearest to some point. */
+typedef struct strut_facet_foot {
+  double at[2], distance; /* [m] */
+  bool held;              /* it is an end of the facet */
+} strut_facet_foot;
+
+/** The largest signed distance of p from the lines of all facets but `except` (-1: of all); *which: the first
+    facet that has it. -INFINITY, and facet 0, where there is none. */
+double strut_surface_outermost(const strut_surface *surface, const double p[2], int32_t except,
+                               int32_t *which);
+/** The first of the facets that are nearest to p, as far as they reach; -1: p is not finite. */
+int32_t strut_surface_nearest(const strut_surface *surface, const double p[2],
+                              strut_facet_foot *foot);
+
+/** Makes the tree over the facets of a compiled surface, where they are many; false: out of memory. */
+bool strut_surface_bound_facets(strut_arena *arena, strut_surface *surface);
+/** Makes the tree over the pieces of one profile, likewise, for all of them. */
+bool strut_surface_bound_pieces(strut_arena *arena, strut_surface *pieces, size_t count);
+
 /**
- * Contacts from `first` on that are those of one node with all of the more than STRUT_FEW_PIECES pieces of
- * a profile; 0 where it begins none.
+ * Contacts from `first` on that are those of one node with all pieces of a long profile, which is searched by
+ * a tree; 0 where it begins none.
  */
 int32_t strut_contacts_of_profile(const strut_contact_table *contacts, int32_t first);
 /** The contact of these whose gap in q is least, the first of several; *gap: that [m]. */

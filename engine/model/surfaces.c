@@ -11,55 +11,6 @@ static strut_contact_axes axes_along(double x, double y) {
   return (strut_contact_axes){{x, y}, {-y, x}};
 }
 
-/* The largest signed distance of p from the lines of all facets but `except` (-1: of all); *which: the first
-   facet that has it. -INFINITY, and facet 0, where there is none. */
-static double find_outermost(const strut_surface *surface, const double p[2], int32_t except,
-                             int32_t *which) {
-  double best = -HUGE_VAL;
-  *which = 0;
-  for (int32_t k = 0; k < surface->facets; k++) {
-    double own = strut_facet_across(&surface->facet[k], p);
-    if (k != except && own > best) best = own, *which = k;
-  }
-  return best;
-}
-
-/* The point of a facet that is nearest to some point. */
-typedef struct facet_foot {
-  double at[2], distance; /* [m] */
-  bool held;              /* it is an end of the facet */
-} facet_foot;
-
-static void reach_of(const strut_surface *surface, int32_t k, double *low, double *high) {
-  assert(k >= 0 && k < surface->facets);
-  *low = k == 0 ? -surface->before : 0.0;
-  *high = surface->facet[k].length + (k + 1 == surface->facets ? surface->beyond : 0.0);
-}
-
-static facet_foot foot_on(const strut_surface *surface, int32_t k, const double p[2]) {
-  assert(k >= 0 && k < surface->facets);
-  const strut_facet *facet = &surface->facet[k];
-  double low, high, at = strut_facet_along(facet, p);
-  reach_of(surface, k, &low, &high);
-  double held = at < low ? low : at > high ? high : at;
-  facet_foot foot = {.at = {facet->point[0] + held * facet->axes.tangent[0],
-                            facet->point[1] + held * facet->axes.tangent[1]},
-                     .held = held != at};
-  foot.distance = foot.held ? strut_distance(foot.at, p) : fabs(strut_facet_across(facet, p));
-  return foot;
-}
-
-/* The first of the facets that are nearest to p, as far as they reach; -1: p is not finite. */
-static int32_t find_nearest(const strut_surface *surface, const double p[2], facet_foot *nearest) {
-  int32_t which = -1;
-  *nearest = (facet_foot){.distance = HUGE_VAL};
-  for (int32_t k = 0; k < surface->facets; k++) {
-    facet_foot foot = foot_on(surface, k, p);
-    if (foot.distance < nearest->distance) *nearest = foot, which = k;
-  }
-  return which;
-}
-
 static void find_on_facet(const strut_surface *surface, const double p[2], int32_t k,
                           strut_contact_pose *pose) {
   assert(k >= 0 && k < surface->facets);
@@ -77,8 +28,8 @@ static void find_from_foot(const double foot[2], const double p[2], double gap, 
 /* Outside a convex piece: its nearest segment or corner. */
 static void find_outside(const strut_surface *surface, const double p[2],
                          strut_contact_pose *pose) {
-  facet_foot foot;
-  int32_t k = find_nearest(surface, p, &foot);
+  strut_facet_foot foot;
+  int32_t k = strut_surface_nearest(surface, p, &foot);
   if (k < 0) return;
   *pose = (strut_contact_pose){.axes = surface->facet[k].axes, .gap = foot.distance, .facet = k};
   if (!foot.held || !(foot.distance > 0.0)) return;
@@ -89,7 +40,7 @@ static void find_outside(const strut_surface *surface, const double p[2],
 static void find_on_piece(const strut_surface *surface, const double p[2],
                           strut_contact_pose *pose) {
   int32_t nearest;
-  double gap = find_outermost(surface, p, -1, &nearest);
+  double gap = strut_surface_outermost(surface, p, -1, &nearest);
   const strut_facet *facet = &surface->facet[nearest];
   double at = strut_facet_along(facet, p);
   bool beyond = (nearest == 0 && at < -surface->before) ||
@@ -124,56 +75,17 @@ void strut_surface_find(const strut_surface *surface, const double point[2], int
 double strut_surface_margin(const strut_surface *surface, const double point[2], int32_t facet,
                             int32_t *nearest) {
   assert(facet >= 0 && facet < surface->facets);
-  double other = find_outermost(surface, point, facet, nearest);
+  double other = strut_surface_outermost(surface, point, facet, nearest);
   if (other == -HUGE_VAL) *nearest = facet;
   return strut_facet_across(&surface->facet[facet], point) - other;
-}
-
-/* ---- bounds ---- */
-
-/* Bounds are widened by this part of the lengths they come from: more than these are rounded by. */
-static const double ROUNDING = 1e-14;
-
-/* Widens the box of a surface by a facet, as far as that reaches. */
-static void add_facet(strut_surface *surface, int32_t k) {
-  assert(k >= 0 && k < surface->facets);
-  const strut_facet *facet = &surface->facet[k];
-  double end[2];
-  reach_of(surface, k, &end[0], &end[1]);
-  for (int e = 0; e < 2; e++)
-    for (int c = 0; c < 2; c++) {
-      double t = facet->axes.tangent[c], x = facet->point[c] + (t != 0.0 ? end[e] * t : 0.0);
-      double wide = ROUNDING * (fabs(facet->point[0]) + fabs(facet->point[1]) + facet->length);
-      surface->low[c] = fmin(surface->low[c], x - wide);
-      surface->high[c] = fmax(surface->high[c], x + wide);
-    }
-}
-
-static void bound_facets(strut_surface *surface) {
-  for (int c = 0; c < 2; c++) surface->low[c] = HUGE_VAL, surface->high[c] = -HUGE_VAL;
-  for (int32_t k = 0; k < surface->facets; k++) add_facet(surface, k);
-}
-
-/* The least distance of p from the box of a surface. */
-static double box_distance(const strut_surface *surface, const double p[2]) {
-  double x = fmax(0.0, fmax(surface->low[0] - p[0], p[0] - surface->high[0]));
-  double y = fmax(0.0, fmax(surface->low[1] - p[1], p[1] - surface->high[1]));
-  double size = sqrt(x * x + y * y);
-  return size - ROUNDING * (size + fabs(p[0]) + fabs(p[1]));
-}
-
-/* How far p is outside the lines of a piece's first and last facets, at most: its gap is no less. */
-static double outside_ends(const strut_surface *piece, const double p[2]) {
-  double first = strut_facet_across(&piece->facet[0], p);
-  double last = strut_facet_across(&piece->facet[piece->facets - 1], p);
-  return first > last ? first : last;
 }
 
 /* ---- compilation ---- */
 
 /* The piece between points first and last. */
-static bool compile_piece(strut_model *model, const strut_ground *ground, bool monotone,
-                          size_t first, size_t last, strut_surface *surface) {
+static bool compile_piece(strut_model *model, const strut_profile_index *index, size_t first,
+                          size_t last, strut_surface *surface) {
+  const strut_ground *ground = index->ground;
   strut_facet *facet = strut_arena_allocate(&model->arena, last - first, sizeof *facet);
   if (!facet) return false;
   for (size_t k = first; k < last; k++) {
@@ -184,20 +96,22 @@ static bool compile_piece(strut_model *model, const strut_ground *ground, bool m
                                      .length = length};
   }
   surface->facet = facet, surface->facets = (int32_t)(last - first);
-  surface->before = strut_profile_reach(ground, monotone, first, false);
-  surface->beyond = strut_profile_reach(ground, monotone, last, true);
-  bound_facets(surface);
-  return true;
+  surface->before = strut_profile_reach(index, first, false);
+  surface->beyond = strut_profile_reach(index, last, true);
+  return strut_surface_bound_facets(&model->arena, surface);
 }
 
 static bool compile_profile(strut_model *model, const strut_ground *ground, strut_surface *pieces,
                             size_t count) {
-  bool fine = true, monotone = strut_profile_is_monotone(ground);
+  strut_arena scratch = {0};
+  strut_profile_index index;
+  bool fine = strut_profile_index_create(&scratch, ground, &index);
   for (size_t k = 0, first = 0, last; k < count && fine; k++, first = last) {
     last = strut_profile_piece_end(ground, first);
-    fine = compile_piece(model, ground, monotone, first, last, &pieces[k]);
+    fine = compile_piece(model, &index, first, last, &pieces[k]);
   }
-  return fine;
+  strut_arena_free(&scratch);
+  return fine && strut_surface_bound_pieces(&model->arena, pieces, count);
 }
 
 static bool compile_line(strut_model *model, const strut_ground *ground, strut_surface *surface) {
@@ -277,14 +191,259 @@ bool strut_surfaces_compile(strut_model *model) {
   return true;
 }
 
+/* Bounds are widened by this part of the lengths they come from: more than these are rounded by. */
+static const double ROUNDING = 1e-14;
+
+/* ---- bounds ---- */
+
+static strut_line_bounds bound_lines(const strut_facet *first, size_t count) {
+  strut_line_bounds b = {.normal_low = {1.0, 1.0}, .normal_high = {-1.0, -1.0}};
+  const strut_facet *among = first + count / 2;
+  b.middle[0] = among->point[0], b.middle[1] = among->point[1];
+  b.least = HUGE_VAL, b.most = -HUGE_VAL;
+  for (size_t k = 0; k < count; k++) {
+    const strut_facet *facet = first + k;
+    double distance = strut_facet_across(facet, b.middle);
+    double wide = ROUNDING * strut_distance(facet->point, b.middle);
+    b.least = fmin(b.least, distance - wide), b.most = fmax(b.most, distance + wide);
+    for (int c = 0; c < 2; c++) {
+      b.normal_low[c] = fmin(b.normal_low[c], facet->axes.normal[c]);
+      b.normal_high[c] = fmax(b.normal_high[c], facet->axes.normal[c]);
+    }
+  }
+  return b;
+}
+
+/* No facet of them is further on the outer side of its line than `high`, none less than `low`. */
+static void bound_across(const strut_line_bounds *bounds, const double p[2], double *low,
+                         double *high) {
+  double x = p[0] - bounds->middle[0], y = p[1] - bounds->middle[1];
+  double wide = ROUNDING * (fabs(x) + fabs(y));
+  double left = x * bounds->normal_low[0], right = x * bounds->normal_high[0];
+  double down = y * bounds->normal_low[1], up = y * bounds->normal_high[1];
+  *low = (left < right ? left : right) + (down < up ? down : up) + bounds->least - wide;
+  *high = (left < right ? right : left) + (down < up ? up : down) + bounds->most + wide;
+}
+
+static void reach_of(const strut_surface *surface, int32_t k, double *low, double *high) {
+  assert(k >= 0 && k < surface->facets);
+  *low = k == 0 ? -surface->before : 0.0;
+  *high = surface->facet[k].length + (k + 1 == surface->facets ? surface->beyond : 0.0);
+}
+
+/* Widens a box by a facet, as far as that reaches. */
+static void add_facet(const strut_surface *surface, int32_t k, double box_low[2],
+                      double box_high[2]) {
+  assert(k >= 0 && k < surface->facets);
+  const strut_facet *facet = &surface->facet[k];
+  double end[2];
+  reach_of(surface, k, &end[0], &end[1]);
+  for (int e = 0; e < 2; e++)
+    for (int c = 0; c < 2; c++) {
+      double t = facet->axes.tangent[c], x = facet->point[c] + (t != 0.0 ? end[e] * t : 0.0);
+      double wide = ROUNDING * (fabs(facet->point[0]) + fabs(facet->point[1]) + facet->length);
+      box_low[c] = fmin(box_low[c], x - wide), box_high[c] = fmax(box_high[c], x + wide);
+    }
+}
+
+/* The least distance of p from a box. */
+static double box_distance(const double low[2], const double high[2], const double p[2]) {
+  double x = fmax(0.0, fmax(low[0] - p[0], p[0] - high[0]));
+  double y = fmax(0.0, fmax(low[1] - p[1], p[1] - high[1])), size = sqrt(x * x + y * y);
+  return size - ROUNDING * (size + fabs(p[0]) + fabs(p[1]));
+}
+
+static void bound_facets(const strut_surface *surface, strut_facet_bounds *node, strut_subtree r) {
+  strut_facet_bounds *bounds = &node[r.at];
+  for (int c = 0; c < 2; c++) bounds->low[c] = HUGE_VAL, bounds->high[c] = -HUGE_VAL;
+  for (size_t k = r.begin; k < r.end; k++)
+    add_facet(surface, (int32_t)k, bounds->low, bounds->high);
+  bounds->lines = bound_lines(&surface->facet[r.begin], r.end - r.begin);
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
+    bound_facets(surface, node, strut_subtree_child(r, i));
+}
+
+bool strut_surface_bound_facets(strut_arena *arena, strut_surface *surface) {
+  size_t count = (size_t)surface->facets;
+  if (count <= STRUT_SUBTREE_LEAF) return true;
+  strut_facet_bounds *node = strut_arena_allocate(arena, strut_subtree_nodes(count), sizeof *node);
+  if (node) bound_facets(surface, node, (strut_subtree){0, 0, count});
+  surface->bounds = node;
+  return node != NULL;
+}
+
+/* ---- pieces ---- */
+
+/* Bounds of some pieces, of their first facets, and of their last ones. */
+typedef struct piece_bounds {
+  double low[2], high[2]; /* all facets, as far as they reach [m] */
+  strut_line_bounds first, last;
+} piece_bounds;
+
+/* A tree over some of the pieces. */
+typedef struct piece_tree {
+  size_t count;
+  const int32_t *piece; /* (count) ascending */
+  const piece_bounds *node;
+} piece_tree;
+
+/*
+ * A piece that reaches without end has no box, but its line leads away from a point that is far above: trees
+ * of one kind each can tell either way.
+ */
+enum { KINDS = 4 };
+struct strut_piece_index {
+  piece_tree tree[KINDS];
+};
+
+static int kind_of(const strut_surface *piece) {
+  return (piece->before == HUGE_VAL) + 2 * (piece->beyond == HUGE_VAL);
+}
+
+/* first, last: the facets at the ends of each piece of the tree. */
+static void bound_pieces(const strut_surface *all, const piece_tree *tree, const strut_facet *first,
+                         const strut_facet *last, piece_bounds *node, strut_subtree r) {
+  size_t count = r.end - r.begin;
+  piece_bounds *self = &node[r.at];
+  self->first = bound_lines(first + r.begin, count);
+  self->last = bound_lines(last + r.begin, count);
+  for (int c = 0; c < 2; c++) self->low[c] = HUGE_VAL, self->high[c] = -HUGE_VAL;
+  for (size_t k = r.begin; k < r.end; k++) {
+    const strut_surface *piece = &all[tree->piece[k]];
+    for (int32_t i = 0; i < piece->facets; i++) add_facet(piece, i, self->low, self->high);
+  }
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
+    bound_pieces(all, tree, first, last, node, strut_subtree_child(r, i));
+}
+
+/* The tree of one kind of pieces; ends: space for twice as many facets. */
+static bool make_tree(strut_arena *arena, const strut_surface *all, size_t count, int kind,
+                      strut_facet *ends, piece_tree *tree) {
+  size_t n = 0;
+  for (size_t k = 0; k < count; k++) n += kind_of(&all[k]) == kind;
+  if (!n) return true;
+  int32_t *piece = strut_arena_allocate(arena, n, sizeof *piece);
+  piece_bounds *node = strut_arena_allocate(arena, strut_subtree_nodes(n), sizeof *node);
+  if (!piece || !node) return false;
+  *tree = (piece_tree){n, piece, node};
+  for (size_t k = 0, i = 0; k < count; k++) {
+    if (kind_of(&all[k]) != kind) continue;
+    ends[i] = all[k].facet[0], ends[n + i] = all[k].facet[all[k].facets - 1];
+    piece[i++] = (int32_t)k;
+  }
+  bound_pieces(all, tree, ends, ends + n, node, (strut_subtree){0, 0, n});
+  return true;
+}
+
+bool strut_surface_bound_pieces(strut_arena *arena, strut_surface *pieces, size_t count) {
+  if (count <= STRUT_SUBTREE_LEAF) return true;
+  struct strut_piece_index *index = strut_arena_allocate(arena, 1, sizeof *index);
+  strut_facet *ends = strut_allocate(2 * count, sizeof *ends);
+  bool fine = index && ends;
+  for (int kind = 0; kind < KINDS && fine; kind++)
+    fine = make_tree(arena, pieces, count, kind, ends, &index->tree[kind]);
+  for (size_t k = 0; k < count && fine; k++) pieces[k].index = index;
+  strut_release(ends);
+  return fine;
+}
+
+/* ---- searches ---- */
+
+typedef struct facet_search {
+  const strut_surface *surface;
+  const double *p;
+  int32_t except, which;
+  double best;
+  strut_facet_foot foot;
+} facet_search;
+
+static strut_subtree all_facets(const strut_surface *surface) {
+  return (strut_subtree){0, 0, (size_t)surface->facets};
+}
+
+/* How far inwards all facets of a node are at least, negated: the most that one can be outwards. */
+static double most_across(const facet_search *self, strut_subtree r) {
+  double low, high;
+  bound_across(&self->surface->bounds[r.at].lines, self->p, &low, &high);
+  return high;
+}
+
+static void search_outermost(facet_search *self, strut_subtree r) {
+  if (!self->surface->bounds || strut_subtree_is_leaf(r)) {
+    for (int32_t k = (int32_t)r.begin; k < (int32_t)r.end; k++) {
+      if (k == self->except) continue;
+      double own = strut_facet_across(&self->surface->facet[k], self->p);
+      if (own > self->best || (own == self->best && k < self->which))
+        self->best = own, self->which = k;
+    }
+    return;
+  }
+  strut_subtree one = strut_subtree_child(r, 0), other = strut_subtree_child(r, 1);
+  double at_one = most_across(self, one), at_other = most_across(self, other);
+  bool turned = at_other > at_one;
+  if (!((turned ? at_other : at_one) < self->best)) search_outermost(self, turned ? other : one);
+  if (!((turned ? at_one : at_other) < self->best)) search_outermost(self, turned ? one : other);
+}
+
+double strut_surface_outermost(const strut_surface *surface, const double p[2], int32_t except,
+                               int32_t *which) {
+  facet_search s = {.surface = surface, .p = p, .except = except, .best = -HUGE_VAL};
+  search_outermost(&s, all_facets(surface));
+  *which = s.which;
+  return s.best;
+}
+
+static strut_facet_foot foot_on(const strut_surface *surface, int32_t k, const double p[2]) {
+  assert(k >= 0 && k < surface->facets);
+  const strut_facet *facet = &surface->facet[k];
+  double low, high, at = strut_facet_along(facet, p);
+  reach_of(surface, k, &low, &high);
+  double held = at < low ? low : at > high ? high : at;
+  strut_facet_foot foot = {.at = {facet->point[0] + held * facet->axes.tangent[0],
+                                  facet->point[1] + held * facet->axes.tangent[1]},
+                           .held = held != at};
+  foot.distance = foot.held ? strut_distance(foot.at, p) : fabs(strut_facet_across(facet, p));
+  return foot;
+}
+
+/* The least distance that a facet of a node can have. */
+static double least_distance(const facet_search *self, strut_subtree r) {
+  const strut_facet_bounds *bounds = &self->surface->bounds[r.at];
+  return box_distance(bounds->low, bounds->high, self->p);
+}
+
+static void search_nearest(facet_search *self, strut_subtree r) {
+  if (!self->surface->bounds || strut_subtree_is_leaf(r)) {
+    for (int32_t k = (int32_t)r.begin; k < (int32_t)r.end; k++) {
+      strut_facet_foot foot = foot_on(self->surface, k, self->p);
+      if (foot.distance < self->best || (foot.distance == self->best && k < self->which))
+        self->best = foot.distance, self->which = k, self->foot = foot;
+    }
+    return;
+  }
+  strut_subtree one = strut_subtree_child(r, 0), other = strut_subtree_child(r, 1);
+  double at_one = least_distance(self, one), at_other = least_distance(self, other);
+  bool turned = at_other < at_one;
+  if (!((turned ? at_other : at_one) > self->best)) search_nearest(self, turned ? other : one);
+  if (!((turned ? at_one : at_other) > self->best)) search_nearest(self, turned ? one : other);
+}
+
+int32_t strut_surface_nearest(const strut_surface *surface, const double p[2],
+                              strut_facet_foot *foot) {
+  facet_search s = {.surface = surface, .p = p, .which = -1, .best = HUGE_VAL};
+  search_nearest(&s, all_facets(surface));
+  *foot = s.foot;
+  return s.which;
+}
+
 /* ---- contacts ---- */
 
 int32_t strut_contacts_of_profile(const strut_contact_table *contacts, int32_t first) {
   assert(first >= 0 && first < contacts->count);
   const strut_surface *surface = &contacts->surface[contacts->surface_of[first]];
   int32_t last = first + surface->pieces - 1;
-  bool whole = surface->pieces > STRUT_FEW_PIECES && surface->piece == 0 &&
-               last < contacts->count && contacts->at[last] == contacts->at[first] &&
+  bool whole = surface->index && surface->piece == 0 && last < contacts->count &&
+               contacts->at[last] == contacts->at[first] &&
                contacts->surface_of[last] - contacts->surface_of[first] == last - first;
   return whole ? surface->pieces : 0;
 }
@@ -308,13 +467,48 @@ static void place_of(const strut_contact_table *contacts, int32_t i, const doubl
   p[1] = positions[contacts->at[i] + 1] - (own ? own->place[1] : 0.0);
 }
 
+typedef struct piece_search {
+  const strut_surface *all;
+  const piece_tree *tree;
+  const double *p;
+  double margin;
+  int32_t first, count, *list;
+} piece_search;
+
 /*
- * Is the piece not within the margin, nor touched? The gap is not less than the distance from any of its lines; where it
- * is negative, it is minus the distance from a point of the piece that is no further than each of them.
+ * Is no piece of a node of the tree within the margin, and none touched? The gap is not less than the
+ * distance from any of its lines; where it is negative, it is minus the distance from a point of the piece
+ * that is no further than each of them.
  */
-static bool is_apart(const strut_surface *piece, const double p[2], double margin) {
-  double outside = outside_ends(piece, p);
-  return outside > margin || box_distance(piece, p) > (-outside > margin ? -outside : margin);
+static bool is_apart(const piece_bounds *self, const double p[2], double margin) {
+  double first, last, unused;
+  bound_across(&self->first, p, &first, &unused);
+  bound_across(&self->last, p, &last, &unused);
+  if (first > margin || last > margin) return true;
+  double deepest = first > last ? -first : -last;
+  return box_distance(self->low, self->high, p) > (deepest > margin ? deepest : margin);
+}
+
+static void search_pieces(piece_search *self, strut_subtree r) {
+  if (is_apart(&self->tree->node[r.at], self->p, self->margin)) return;
+  for (size_t k = r.begin; k < r.end && strut_subtree_is_leaf(r); k++) {
+    const strut_surface *piece = &self->all[self->tree->piece[k]];
+    if (!(strut_facet_across(&piece->facet[0], self->p) > self->margin) &&
+        !(strut_facet_across(&piece->facet[piece->facets - 1], self->p) > self->margin))
+      self->list[self->count++] = self->first + self->tree->piece[k];
+  }
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
+    search_pieces(self, strut_subtree_child(r, i));
+}
+
+/* Shell's sort, which needs no memory. */
+static void sort_numbers(int32_t *list, int32_t count) {
+  for (int32_t gap = count / 2; gap > 0; gap /= 2)
+    for (int32_t i = gap; i < count; i++) {
+      int32_t number = list[i], at = i;
+      for (; at >= gap && list[at - gap] > number; at -= gap) list[at] = list[at - gap];
+      list[at] = number;
+    }
 }
 
 int32_t strut_contacts_near(const strut_contact_table *contacts, int32_t first, int32_t end,
@@ -331,8 +525,13 @@ int32_t strut_contacts_near(const strut_contact_table *contacts, int32_t first, 
     double p[2];
     place_of(contacts, i, positions, motion, p);
     const strut_surface *all = &contacts->surface[contacts->surface_of[i]];
-    for (int32_t k = 0; k < pieces; k++)
-      if (!is_apart(&all[k], p, margin)) list[count++] = i + k;
+    piece_search s = {all, NULL, p, margin, i, 0, list + count};
+    for (int kind = 0; kind < KINDS; kind++) {
+      s.tree = &all->index->tree[kind];
+      if (s.tree->count) search_pieces(&s, (strut_subtree){0, 0, s.tree->count});
+    }
+    sort_numbers(s.list, s.count);
+    count += s.count;
   }
   return count;
 }
@@ -345,32 +544,50 @@ int32_t strut_contacts_all_near(const strut_contact_table *contacts, const doubl
   return contacts->count;
 }
 
-/* No piece's gap is smaller than this. */
-static double least_gap(const strut_surface *piece, const double p[2]) {
-  double outside = outside_ends(piece, p), box = box_distance(piece, p);
-  return outside > 0.0 && box > outside ? box : outside;
+/* ---- the lowest piece ---- */
+
+typedef struct lowest_search {
+  const strut_surface *all;
+  const piece_tree *tree;
+  const double *p;
+  int32_t which;
+  double gap;
+} lowest_search;
+
+/* No piece of a node of the tree has a smaller gap. */
+static double least_gap(const lowest_search *self, strut_subtree r) {
+  const piece_bounds *b = &self->tree->node[r.at];
+  double first, last, unused;
+  bound_across(&b->first, self->p, &first, &unused);
+  bound_across(&b->last, self->p, &last, &unused);
+  double lines = first > last ? first : last, box = box_distance(b->low, b->high, self->p);
+  return lines > 0.0 && box > lines ? box : lines;
 }
 
-static double gap_of(const strut_surface *surface, const double p[2]) {
-  strut_contact_pose pose = {.gap = HUGE_VAL};
-  strut_surface_find(surface, p, -1, &pose);
-  return pose.gap;
+static void search_lowest(lowest_search *self, strut_subtree r) {
+  for (size_t i = r.begin; i < r.end && strut_subtree_is_leaf(r); i++) {
+    int32_t k = self->tree->piece[i];
+    strut_contact_pose pose = {.gap = HUGE_VAL};
+    strut_surface_find(&self->all[k], self->p, -1, &pose);
+    if (pose.gap < self->gap || (pose.gap == self->gap && k < self->which))
+      self->gap = pose.gap, self->which = k;
+  }
+  if (strut_subtree_is_leaf(r)) return;
+  strut_subtree one = strut_subtree_child(r, 0), other = strut_subtree_child(r, 1);
+  double at_one = least_gap(self, one), at_other = least_gap(self, other);
+  bool turned = at_other < at_one;
+  if (!((turned ? at_other : at_one) > self->gap)) search_lowest(self, turned ? other : one);
+  if (!((turned ? at_one : at_other) > self->gap)) search_lowest(self, turned ? one : other);
 }
 
 int32_t strut_surface_lowest(const strut_surface *first, const double p[2], double *gap) {
-  int32_t which = 0;
-  double least = HUGE_VAL;
-  for (int32_t k = 0; k < first->pieces; k++) { /* one that is likely to be among the lowest */
-    double own = least_gap(&first[k], p);
-    if (own < least) least = own, which = k;
+  lowest_search s = {first, NULL, p, 0, HUGE_VAL};
+  for (int kind = 0; kind < KINDS; kind++) {
+    s.tree = &first->index->tree[kind];
+    if (s.tree->count) search_lowest(&s, (strut_subtree){0, 0, s.tree->count});
   }
-  *gap = gap_of(&first[which], p);
-  for (int32_t k = 0; k < first->pieces; k++) {
-    if (k == which || least_gap(&first[k], p) > *gap) continue;
-    double own = gap_of(&first[k], p);
-    if (own < *gap || (own == *gap && k < which)) *gap = own, which = k;
-  }
-  return which;
+  *gap = s.gap;
+  return s.which;
 }
 
 int32_t strut_contacts_lowest(const strut_contact_table *contacts, int32_t first,

@@ -26,17 +26,28 @@ typedef struct strut_facet {
   double length; /* [m]; INFINITY of a line */
 } strut_facet;
 
-/* Of more pieces, those that are not near a node are passed over. */
-enum { STRUT_FEW_PIECES = 8 };
+/** Bounds of the lines of some facets. */
+typedef struct strut_line_bounds {
+  double middle[2];                     /* a point among them [m] */
+  double normal_low[2], normal_high[2]; /* of their normals */
+  double least, most;                   /* signed distances of `middle` from them [m] */
+} strut_line_bounds;
+
+/** Bounds of consecutive facets, a node of a tree (pose.h). */
+typedef struct strut_facet_bounds {
+  double low[2], high[2]; /* as far as they reach [m] */
+  strut_line_bounds lines;
+} strut_facet_bounds;
 
 /** A line, a circle, or a convex piece of a profile. */
 typedef struct strut_surface {
-  int32_t ground, piece;    /* in the scene */
-  int32_t facets;           /* 0: a circle */
-  const strut_facet *facet; /* (facets) in the direction of the profile */
-  int32_t pieces;           /* of its ground, all of which follow each other */
+  int32_t ground, piece;                 /* in the scene */
+  int32_t facets;                        /* 0: a circle */
+  const strut_facet *facet;              /* (facets) in the direction of the profile */
+  const strut_facet_bounds *bounds;      /* a tree over them; NULL where they are few */
+  int32_t pieces;                        /* of its ground, all of which follow each other */
+  const struct strut_piece_index *index; /* trees over these; NULL where they are few */
   double before, beyond;    /* how far the first and the last of them reach further [m] */
-  double low[2], high[2];   /* of a piece of a profile, as far as its facets reach [m] */
   double centre[2], radius; /* of a circle [m] */
   bool inside;              /* its free space is inside */
   double belt_speed;        /* [m/s], along the tangent */

@@ -31,16 +31,17 @@ size_t strut_profile_piece_end(const strut_ground *ground, size_t first) {
   return last;
 }
 
-/* The first segment that meets one before it, other than its neighbour, and the first of those. */
-static bool find_crossing(const strut_ground *ground, size_t *segment, size_t *other) {
-  for (*segment = 2; *segment + 1 < ground->point_count; ++*segment) {
-    strut_stretch later = strut_profile_stretch(ground, *segment);
-    for (*other = 0; *other + 1 < *segment; ++*other) {
-      strut_stretch earlier = strut_profile_stretch(ground, *other);
-      if (!isnan(strut_stretches_meet(&earlier, &later))) return true;
-    }
-  }
-  return false;
+/* Two segments that meet, though no neighbours. */
+static strut_profile_fault find_crossing(const strut_ground *ground, size_t *segment,
+                                         size_t *other) {
+  strut_arena arena = {0};
+  strut_profile_index index;
+  strut_profile_fault fault = STRUT_PROFILE_NO_MEMORY;
+  if (strut_profile_index_create(&arena, ground, &index))
+    fault = strut_profile_find_crossing(&index, segment, other) ? STRUT_PROFILE_CROSSES
+                                                                : STRUT_PROFILE_FINE;
+  strut_arena_free(&arena);
+  return fault;
 }
 
 strut_profile_fault strut_profile_check(const strut_ground *ground, size_t *segment,
@@ -63,35 +64,17 @@ strut_profile_fault strut_profile_check(const strut_ground *ground, size_t *segm
         dot(before, a) < 0.0)
       return STRUT_PROFILE_BACK;
   }
-  bool crosses = !strut_profile_is_monotone(ground) && find_crossing(ground, segment, other);
-  return crosses ? STRUT_PROFILE_CROSSES : STRUT_PROFILE_FINE;
+  return strut_profile_is_monotone(ground) ? STRUT_PROFILE_FINE
+                                           : find_crossing(ground, segment, other);
 }
 
-/*
- * Where a ray from point `at` first meets another segment than the two there [lengths of ray->along]; INFINITY: nowhere.
- * Along a monotone profile the first segment that it meets is the nearest, or the next one where it meets their corner.
- */
-static double cast_ray(const strut_ground *ground, bool monotone, size_t at, bool forward,
-                       const strut_stretch *ray) {
-  size_t segments = ground->point_count - 1, from = forward ? at : segments - at;
-  double first = HUGE_VAL;
-  for (size_t n = monotone ? from + 1 : 0, more = 2; n < segments && more; n++) {
-    size_t k = forward ? n : segments - 1 - n;
-    if (k == at || k + 1 == at) continue;
-    strut_stretch other = strut_profile_stretch(ground, k);
-    double where = strut_stretches_meet(ray, &other);
-    if (where < first) first = where;
-    if (monotone && first < HUGE_VAL) more--;
-  }
-  return first;
-}
-
-double strut_profile_reach(const strut_ground *ground, bool monotone, size_t at, bool forward) {
+double strut_profile_reach(const strut_profile_index *index, size_t at, bool forward) {
+  const strut_ground *ground = index->ground;
   if (at == 0 || at + 1 == ground->point_count) return HUGE_VAL;
   strut_vec2 along = segment_of(ground, forward ? at - 1 : at);
   if (!forward) along = (strut_vec2){-along.x, -along.y};
   const strut_stretch ray = {ground->points[at], along, 0.0, HUGE_VAL};
-  return 0.5 * cast_ray(ground, monotone, at, forward, &ray) * strut_vec2_length(along);
+  return 0.5 * strut_profile_cast_ray(index, &ray, at) * strut_vec2_length(along);
 }
 
 /* The nearest point of the profile decides on which side a point is: near a segment the side of its line,
@@ -130,6 +113,8 @@ double strut_ground_depth(const strut_ground *ground, const double p[2]) {
 
 /* ---- crossings with a line ---- */
 
+enum { DIRECTIONS = 4 };
+
 strut_stretch strut_profile_stretch(const strut_ground *ground, size_t k) {
   bool first = k == 0, last = k + 2 == ground->point_count;
   return (strut_stretch){ground->points[k], segment_of(ground, k), first ? -HUGE_VAL : 0.0,
@@ -157,11 +142,16 @@ double strut_stretches_meet(const strut_stretch *first, const strut_stretch *sec
   return low <= high ? (isfinite(low) ? low : high) : (double)NAN;
 }
 
+/* ---- bounds ---- */
+
 /* By how much segment k turns to the left of the one before [rad]. */
 static double turn_before(const strut_ground *ground, size_t k) {
   strut_vec2 a = segment_of(ground, k - 1), b = segment_of(ground, k);
   return atan2(cross(a, b), dot(a, b));
 }
+
+/* Directions within less than half a turn have one along which all of them advance. */
+static bool advances(double least, double most) { return most - least < 0.5 * STRUT_TAU - 1e-9; }
 
 bool strut_profile_is_monotone(const strut_ground *ground) {
   double angle = 0.0, least = 0.0, most = 0.0;
@@ -169,7 +159,186 @@ bool strut_profile_is_monotone(const strut_ground *ground) {
     angle += turn_before(ground, k);
     least = fmin(least, angle), most = fmax(most, angle);
   }
-  return most - least < 0.5 * STRUT_TAU - 1e-9; /* within less than half a turn */
+  return advances(least, most);
+}
+
+static strut_profile_bounds no_bounds(void) {
+  strut_profile_bounds b = {.least = HUGE_VAL, .most = -HUGE_VAL};
+  for (int d = 0; d < DIRECTIONS; d++) b.low[d] = HUGE_VAL, b.high[d] = -HUGE_VAL;
+  return b;
+}
+
+static void add_bounds(strut_profile_bounds *to, const strut_profile_bounds *bounds) {
+  for (int d = 0; d < DIRECTIONS; d++) {
+    to->low[d] = fmin(to->low[d], bounds->low[d]);
+    to->high[d] = fmax(to->high[d], bounds->high[d]);
+  }
+  to->least = fmin(to->least, bounds->least), to->most = fmax(to->most, bounds->most);
+}
+
+/* With what the test for meeting tolerates. */
+static strut_profile_bounds bounds_of(const strut_ground *ground, size_t k, double angle) {
+  strut_profile_bounds b = no_bounds();
+  double size = strut_vec2_length(segment_of(ground, k));
+  for (int end = 0; end < 2; end++) {
+    const double *p = ground->points[k + (size_t)end];
+    const double value[DIRECTIONS] = {p[0], p[1], p[0] + p[1], p[0] - p[1]};
+    double wide = 2.0 * ONE_LINE * size + 1e-15 * (fabs(p[0]) + fabs(p[1]));
+    for (int d = 0; d < DIRECTIONS; d++) {
+      b.low[d] = fmin(b.low[d], value[d] - wide);
+      b.high[d] = fmax(b.high[d], value[d] + wide);
+    }
+  }
+  b.least = b.most = angle;
+  return b;
+}
+
+/* In the order of the profile, so that the angle adds up. */
+static void build(const strut_ground *ground, strut_profile_bounds *node, strut_subtree r,
+                  double *angle) {
+  node[r.at] = no_bounds();
+  for (size_t k = r.begin; k < r.end && strut_subtree_is_leaf(r); k++) {
+    if (k) *angle += turn_before(ground, k);
+    strut_profile_bounds own = bounds_of(ground, k, *angle);
+    add_bounds(&node[r.at], &own);
+  }
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++) {
+    strut_subtree part = strut_subtree_child(r, i);
+    build(ground, node, part, angle);
+    add_bounds(&node[r.at], &node[part.at]);
+  }
+}
+
+static strut_subtree whole(const strut_profile_index *index) {
+  return (strut_subtree){0, 0, index->segments};
+}
+
+bool strut_profile_index_create(strut_arena *arena, const strut_ground *ground,
+                                strut_profile_index *index) {
+  size_t nodes = strut_subtree_nodes(ground->point_count - 1);
+  strut_profile_bounds *node = strut_arena_allocate(arena, nodes, sizeof *node);
+  double angle = 0.0;
+  if (!node) return false;
+  *index = (strut_profile_index){ground, ground->point_count - 1, node};
+  build(ground, node, whole(index), &angle);
+  return true;
+}
+
+/* ---- crossings ---- */
+
+typedef struct crossing {
+  const strut_profile_index *index;
+  bool found;
+  size_t segment, other; /* the first found so far */
+} crossing;
+
+static void try_pair(crossing *self, size_t other, size_t segment) {
+  if (other + 1 >= segment) return;
+  if (self->found &&
+      (segment > self->segment || (segment == self->segment && other >= self->other)))
+    return;
+  strut_stretch a = strut_profile_stretch(self->index->ground, other);
+  strut_stretch b = strut_profile_stretch(self->index->ground, segment);
+  if (isnan(strut_stretches_meet(&a, &b))) return;
+  self->found = true, self->segment = segment, self->other = other;
+}
+
+static bool are_apart(const strut_profile_bounds *first, const strut_profile_bounds *second) {
+  bool apart = false;
+  for (int d = 0; d < DIRECTIONS; d++)
+    apart = apart || first->low[d] > second->high[d] || second->low[d] > first->high[d];
+  return apart;
+}
+
+/* Pairs of a segment of a and a later one of b. */
+static void cross_ranges(crossing *self, strut_subtree a, strut_subtree b) {
+  const strut_profile_bounds *bounds = &self->index->node[a.at], *y = &self->index->node[b.at];
+  bool one_chain =
+      a.end == b.begin && advances(fmin(bounds->least, y->least), fmax(bounds->most, y->most));
+  if (one_chain || are_apart(bounds, y) || (self->found && b.begin > self->segment)) return;
+  if (strut_subtree_is_leaf(a) && strut_subtree_is_leaf(b)) {
+    for (size_t k = b.begin; k < b.end; k++)
+      for (size_t j = a.begin; j < a.end; j++) try_pair(self, j, k);
+    return;
+  }
+  bool divide_b =
+      strut_subtree_is_leaf(a) || (!strut_subtree_is_leaf(b) && b.end - b.begin > a.end - a.begin);
+  for (int i = 0; i < 2; i++)
+    if (divide_b)
+      cross_ranges(self, a, strut_subtree_child(b, i));
+    else
+      cross_ranges(self, strut_subtree_child(a, i), b);
+}
+
+static void cross_range(crossing *self, strut_subtree r) {
+  const strut_profile_bounds *bounds = &self->index->node[r.at];
+  if (advances(bounds->least, bounds->most) || (self->found && r.begin > self->segment)) return;
+  if (strut_subtree_is_leaf(r)) {
+    for (size_t k = r.begin; k < r.end; k++)
+      for (size_t j = r.begin; j < k; j++) try_pair(self, j, k);
+    return;
+  }
+  cross_range(self, strut_subtree_child(r, 0));
+  cross_ranges(self, strut_subtree_child(r, 0), strut_subtree_child(r, 1));
+  cross_range(self, strut_subtree_child(r, 1));
+}
+
+bool strut_profile_find_crossing(const strut_profile_index *index, size_t *segment, size_t *other) {
+  crossing c = {.index = index};
+  for (size_t k = 2; k < index->segments; k++) try_pair(&c, 0, k);
+  cross_range(&c, whole(index));
+  for (size_t j = 0; j < index->segments; j++) try_pair(&c, j, index->segments - 1);
+  *segment = c.segment, *other = c.other;
+  return c.found;
+}
+
+/* ---- rays ---- */
+
+typedef struct cast {
+  const strut_profile_index *index;
+  const strut_stretch *ray;
+  size_t at;
+  double first;
+} cast;
+
+static void try_segment(cast *self, size_t k) {
+  if (k == self->at || k + 1 == self->at) return;
+  strut_stretch other = strut_profile_stretch(self->index->ground, k);
+  double where = strut_stretches_meet(self->ray, &other);
+  if (where < self->first) self->first = where;
+}
+
+/* Is a box beside the ray, or beyond the first place where that met something? */
+static bool misses(const cast *self, const strut_profile_bounds *bounds) {
+  const strut_stretch *ray = self->ray;
+  double length = strut_vec2_length(ray->along), half_x = 0.5 * (bounds->high[0] - bounds->low[0]),
+         half_y = 0.5 * (bounds->high[1] - bounds->low[1]);
+  strut_vec2 to = {bounds->low[0] + half_x - ray->from[0], bounds->low[1] + half_y - ray->from[1]};
+  double x = fabs(ray->along.x), y = fabs(ray->along.y), wide = 2.0 * ONE_LINE * length;
+  double beside = fabs(cross(to, ray->along)), ahead = dot(to, ray->along);
+  double rounding = 1e-13 * (x * (fabs(to.x) + half_x) + y * (fabs(to.y) + half_y));
+  if (beside > x * half_y + y * half_x + wide * length + rounding) return true;
+  double reach = x * half_x + y * half_y + wide * length + rounding;
+  return ahead + reach < 0.0 || ahead - reach > self->first * length * length;
+}
+
+static void cast_into(cast *self, strut_subtree r) {
+  if (misses(self, &self->index->node[r.at])) return;
+  for (size_t k = r.begin; k < r.end && strut_subtree_is_leaf(r); k++) try_segment(self, k);
+  bool backward = self->ray->along.x * (self->index->ground->points[r.end][0] -
+                                        self->index->ground->points[r.begin][0]) <
+                  0.0;
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
+    cast_into(self, strut_subtree_child(r, backward ? 1 - i : i));
+}
+
+double strut_profile_cast_ray(const strut_profile_index *index, const strut_stretch *ray,
+                              size_t at) {
+  cast c = {index, ray, at, HUGE_VAL};
+  try_segment(&c, 0);
+  try_segment(&c, index->segments - 1);
+  cast_into(&c, whole(index));
+  return c.first;
 }
 
 /* ---- outlines to draw ---- */

@@ -16,6 +16,18 @@ typedef struct strut_stretch {
   double low, high;
 } strut_stretch;
 
+/** Bounds of consecutive segments: an octagon, and the range of their directions. */
+typedef struct strut_profile_bounds {
+  double low[4], high[4]; /* of x, y, x + y, x - y [m] */
+  double least, most;     /* angles turned along the profile [rad] */
+} strut_profile_bounds;
+
+typedef struct strut_profile_index {
+  const strut_ground *ground;
+  size_t segments;
+  const strut_profile_bounds *node; /* a binary tree, the children of k at 2 k + 1 and 2 k + 2 */
+} strut_profile_index;
+
 /** Angles below this are those of one straight line [rad]. */
 #define STRUT_PROFILE_STRAIGHT 1e-12
 
@@ -26,15 +38,26 @@ double strut_stretches_meet(const strut_stretch *first, const strut_stretch *sec
 
 /** Do all segments advance along one direction, so that no two of them can meet? */
 bool strut_profile_is_monotone(const strut_ground *ground);
+/** Bounds of a valid profile but for crossings, in the arena; false: out of memory. */
+bool strut_profile_index_create(strut_arena *arena, const strut_ground *ground,
+                                strut_profile_index *index);
+/** The first segment that meets one before it, other than its neighbour, and the first of those. */
+bool strut_profile_find_crossing(const strut_profile_index *index, size_t *segment, size_t *other);
+/** Where a ray from point `at` first meets another segment than the two there [lengths of ray->along];
+    INFINITY: nowhere. */
+double strut_profile_cast_ray(const strut_profile_index *index, const strut_stretch *ray,
+                              size_t at);
+
 /* ---- faults and pieces ---- */
 
 typedef enum strut_profile_fault {
   STRUT_PROFILE_FINE,
-  STRUT_PROFILE_SHORT,  /* fewer than two points */
-  STRUT_PROFILE_POINT,  /* not finite */
-  STRUT_PROFILE_ZERO,   /* a segment without length */
-  STRUT_PROFILE_BACK,   /* a segment turns back onto the one before */
-  STRUT_PROFILE_CROSSES /* a segment, or the line beyond an end, meets another */
+  STRUT_PROFILE_SHORT,   /* fewer than two points */
+  STRUT_PROFILE_POINT,   /* not finite */
+  STRUT_PROFILE_ZERO,    /* a segment without length */
+  STRUT_PROFILE_BACK,    /* a segment turns back onto the one before */
+  STRUT_PROFILE_CROSSES, /* a segment, or the line beyond an end, meets another */
+  STRUT_PROFILE_NO_MEMORY
 } strut_profile_fault;
 
 /** The first fault of a profile; *segment, *other: from 0, those that have it. */
@@ -46,11 +69,9 @@ STRUT_API size_t strut_ground_pieces(const strut_ground *ground);
 STRUT_API size_t strut_profile_piece_end(const strut_ground *ground, size_t first);
 /**
  * How far the straight line beyond an end of a piece belongs to it [m]: half of its way to where it leaves
- * the solid; INFINITY where it does not. `forward`: beyond the end at point `at`, otherwise before it;
- * `monotone`: strut_profile_is_monotone.
+ * the solid; INFINITY where it does not. `forward`: beyond the end at point `at`, otherwise before it.
  */
-STRUT_API double strut_profile_reach(const strut_ground *ground, bool monotone, size_t at,
-                                     bool forward);
+STRUT_API double strut_profile_reach(const strut_profile_index *index, size_t at, bool forward);
 
 /** How deep a point is inside the solid of a ground [m]; negative outside. */
 STRUT_API double strut_ground_depth(const strut_ground *ground, const double point[2]);

@@ -6,6 +6,69 @@
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 
+enum { LONGEST = 100000 };
+
+/* ---- convex pieces ---- */
+
+static void make_convex(uint64_t *r, int32_t count, strut_facet *facet, strut_surface *s) {
+  double angle = random_between(r, 0, 6), x = 0, y = 0, turn = random_between(r, 0.1, 3.1) / count;
+  bool alike = random_once_in(r, 3); /* a regular polygon has ties */
+  for (int32_t k = 0; k < count; k++) {
+    double length = alike ? 0.125 : random_between(r, 0.01, 1), c = cos(angle), d = sin(angle);
+    facet[k] = (strut_facet){.point = {x, y}, .axes = {{c, d}, {-d, c}}, .length = length};
+    x += length * c, y += length * d;
+    angle -= alike ? turn : random_between(r, 0, 2 * turn);
+  }
+  *s = (strut_surface){.facets = count,
+                       .facet = facet,
+                       .pieces = 1,
+                       .before = random_once_in(r, 2) ? HUGE_VAL : random_between(r, 0, 2),
+                       .beyond = random_once_in(r, 2) ? HUGE_VAL : random_between(r, 0, 2)};
+}
+
+static void compare_poses(const strut_surface *plain, const strut_surface *bounded,
+                          const double p[2]) {
+  strut_contact_pose a = {.facet = -1}, b = {.facet = -2};
+  strut_surface_find(plain, p, -1, &a);
+  strut_surface_find(bounded, p, -1, &b);
+  assert_int_equal(a.facet, b.facet);
+  assert_same_bits(a.gap, b.gap);
+  assert_same_bits(a.curvature, b.curvature);
+  for (int c = 0; c < 2; c++) {
+    assert_same_bits(a.axes.normal[c], b.axes.normal[c]);
+    assert_same_bits(a.axes.tangent[c], b.axes.tangent[c]);
+  }
+  int32_t one, other;
+  double margin = strut_surface_margin(plain, p, a.facet, &one);
+  assert_same_bits(strut_surface_margin(bounded, p, a.facet, &other), margin);
+  assert_int_equal(one, other);
+}
+
+TEST(bounds_do_not_change_the_nearest_facet) {
+  uint64_t r = 1;
+  for (int round = 0; round < 300; round++) {
+    strut_facet facet[400];
+    OWN(strut_arena) arena = {0};
+    strut_surface plain, bounded;
+    int32_t count = 9 + random_below(&r, 390);
+    make_convex(&r, count, facet, &plain);
+    bounded = plain;
+    assert_true(strut_surface_bound_facets(&arena, &bounded));
+    assert_non_null(bounded.bounds);
+    for (int i = 0; i < 200; i++) {
+      const strut_facet *f = &facet[random_below(&r, count)];
+      double along = random_between(&r, -1, 2) * f->length;
+      double side = random_once_in(&r, 2) ? 1 : -1, across = side * random_scale(&r, 1e-9, 30);
+      if (random_once_in(&r, 10)) across = 0.0;
+      double p[2];
+      for (int c = 0; c < 2; c++)
+        p[c] = f->point[c] + along * f->axes.tangent[c] + across * f->axes.normal[c];
+      compare_poses(&plain, &bounded, p);
+      compare_poses(&plain, &bounded, f->point);
+    }
+  }
+}
+
 /* ---- many pieces ---- */
 
 static void read_terrain(uint64_t *r, size_t count, model_run *run) {
@@ -91,23 +154,20 @@ static bool crosses_at_first(const strut_ground *g, size_t *segment, size_t *oth
   return false;
 }
 
-/* Of the line beyond segment at - 1, or before segment `at`: half of where it first meets a segment. */
-static double reach_by_all(const strut_ground *g, size_t at, bool forward) {
-  strut_vec2 d = strut_vec2_between(g->points[forward ? at - 1 : at + 1], g->points[at]);
-  const strut_stretch ray = {g->points[at], d, 0.0, HUGE_VAL};
+static double cast_at_all(const strut_ground *g, const strut_stretch *ray, size_t at) {
   double first = HUGE_VAL;
   for (size_t k = 0; k + 1 < g->point_count; k++) {
     strut_stretch other = strut_profile_stretch(g, k);
-    double where = k == at || k + 1 == at ? (double)NAN : strut_stretches_meet(&ray, &other);
+    double where = k == at || k + 1 == at ? (double)NAN : strut_stretches_meet(ray, &other);
     if (where < first) first = where;
   }
-  return 0.5 * first * strut_vec2_length(d);
+  return first;
 }
 
 TEST(crossings_are_those_of_all_pairs) {
   uint64_t r = 3;
   enum { POINTS = 120 };
-  int crossed = 0, straight = 0, rounds = 400;
+  int crossed = 0, rounds = 400;
   for (int round = 0; round < rounds; round++) {
     double points[POINTS][2];
     make_walk(&r, POINTS, random_scale(&r, 0.05, 1.5), points);
@@ -118,25 +178,37 @@ TEST(crossings_are_those_of_all_pairs) {
     assert_int_equal(fault, crosses ? STRUT_PROFILE_CROSSES : STRUT_PROFILE_FINE);
     crossed += crosses;
     if (crosses) assert_true(segment == k && other == j);
-    bool monotone = strut_profile_is_monotone(&g);
-    straight += monotone;
+    OWN(strut_arena) arena = {0};
+    strut_profile_index index;
+    assert_true(strut_profile_index_create(&arena, &g, &index));
     for (size_t at = 1; at + 1 < POINTS; at++)
-      for (int forward = 0; forward < 2; forward++)
-        assert_same_bits(strut_profile_reach(&g, monotone, at, forward),
-                         reach_by_all(&g, at, forward));
+      for (int way = 0; way < 2; way++) {
+        strut_vec2 d = strut_vec2_between(points[at - (size_t)way], points[at + 1 - (size_t)way]);
+        const strut_stretch ray = {points[at], way ? d : (strut_vec2){-d.x, -d.y}, 0.0, HUGE_VAL};
+        assert_same_bits(strut_profile_cast_ray(&index, &ray, at), cast_at_all(&g, &ray, at));
+      }
   }
-  assert_in_range(straight, rounds / 10, rounds - rounds / 10);
   assert_within(crossed, 0.2 * rounds, 0.9 * rounds);
 }
 
-TEST(long_graphs_are_checked_at_once) {
-  enum { LONGEST = 100000 };
-  FREED double *points = malloc(2 * LONGEST * sizeof *points);
+/* A spiral of many turns, whose last line leads out, is no graph over any line. */
+TEST(long_profiles_are_checked_at_once) {
+  double(*points)[2] = malloc(LONGEST * sizeof *points);
   size_t segment, other;
-  for (size_t k = 0; k < LONGEST; k++)
-    points[2 * k] = (double)k, points[2 * k + 1] = k % 2 ? -1.0 : -1.0001;
-  strut_ground g = profile_of((double(*)[2])points, LONGEST);
+  for (size_t k = 0; k < LONGEST; k++) {
+    double turns = 30.0 * (double)k / LONGEST, radius = 1.0 + turns;
+    points[k][0] = radius * cos(STRUT_TAU * turns), points[k][1] = radius * sin(STRUT_TAU * turns);
+  }
+  strut_ground g = profile_of(points, LONGEST);
   double begin = test_seconds();
+  /* the line before its begin leads through all the turns */
+  assert_int_equal(strut_profile_check(&g, &segment, &other), STRUT_PROFILE_CROSSES);
+  assert_int_equal(other, 0);
+  assert_within(test_seconds() - begin, 0.0, 5.0);
+  for (size_t k = 0; k < LONGEST; k++)
+    points[k][0] = (double)k, points[k][1] = k % 2 ? -1.0 : -1.0001;
+  begin = test_seconds();
   assert_int_equal(strut_profile_check(&g, &segment, &other), STRUT_PROFILE_FINE);
   assert_within(test_seconds() - begin, 0.0, 1.0);
+  free(points);
 }

@@ -93,6 +93,7 @@ static void check_profile(strut_checker *checker) {
       strut_profile_check(&checker->scene->grounds[checker->index], &segment, &other);
   switch (fault) {
     case STRUT_PROFILE_FINE: break;
+    case STRUT_PROFILE_NO_MEMORY: checker->out_of_memory = true; break;
     case STRUT_PROFILE_SHORT:
       strut_fault_of(checker, "profile", "the profile of %s needs at least two points",
                      checker->owner);
