@@ -352,9 +352,9 @@ MUTANTS = [
            "  static const double g[2] = {0.0, 0.0};\n"
            "  const double *weight = potential->model->weight;\n",
            "the potential energy of the weight is left out", "potential|world_statics|equilibria|standing"),
-    Mutant("list-downhill", "engine/statics/equilibria/equilibria.c",
-           "y < b",
-           "y > b",
+    Mutant("list-downhill", "engine/statics/equilibria/naming.c",
+           "return first->energy < second->energy;",
+           "return first->energy > second->energy;",
            "equilibria are listed from the highest energy on", "equilibria|standing|cli_equilibria"),
     Mutant("brief-pulls", "engine/integrate/events/location/between.c",
            "to > faint && stepper->next->tension[k] < 0.0", "to > faint && stepper->next->tension[k] > 0.0",
