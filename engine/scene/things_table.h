@@ -444,7 +444,7 @@
   X(SOLVER, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, "1e-6", OPTIONAL, 0, "", FIELD(strut_experiment, tolerance), "Relative local error per step of `adaptive`, `adaptive8` and `implicit`.") \
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine), "Factor by which methods with events divide the step after a touchdown; 1: no refinement.") \
   X(SOLVER, REFINE_TIME, "refine_time", NUMBER, TIME, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine_time), "Duration of the refinement after a touchdown.") \
-  X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_experiment, accuracy), "Desired relative accuracy of the measured quantities, such as 1 %. Method and step are chosen to meet it.") \
+  X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_experiment, accuracy), "Desired relative accuracy of the measured quantities, such as 1 %, at most 20 %. Method and step are chosen to meet it.") \
   X(SOLVER, BUDGET, "budget", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_USUAL_BUDGET), OPTIONAL, 0, "", FIELD(strut_experiment, budget), "Work limit of `accuracy`, in units of one fine run with a fixed step. A result that would need more is reported as not accurate enough.")
 
 #define STRUT_RUN_FIELDS(X) \

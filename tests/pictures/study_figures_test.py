@@ -147,7 +147,7 @@ sweep(UNITS)
 check(open("out/table.csv").read().startswith("point,tilt [rad],stretch [m],stiffness [N/m],velocity [m/s],"), "units: table")
 for name, wanted, missing in (
         ("lines", ("tilt in deg", "velocity in mm/s", "a) stiffness = 0.1 kN/m", "b) stiffness = 3 kN/m", "25"), ("30",)),
-        ("named", ("stiffness in kN/m", "a) stretch = 0.5 mm", "b) stretch = 20 mm", "level", "half, way", "steep", "status completed"), ()),
+        ("named", ("stiffness in kN/m", "a) stretch = 0.5 mm", "b) stretch = 20 mm", "level", "half, way", "steep", "status completed of at least one tilt"), ()),
         ("less", ("velocity, stretch 0.02 less 0.0005 in mm/s",), ()),
         ("map", ("tilt in deg", "stretch in mm", "60", "20", "25"), ("tilt in rad",))):
     said = texts(f"out/{name}.svg")

@@ -390,7 +390,7 @@ void strut_read_experiment(strut_reader *reader) {
                          &reader->solver))
     strut_store(reader, &reader->solver, solver, experiment);
   experiment->accuracy_assumed =
-      reader->purpose == STRUT_FOR_RUN &&
+      (reader->purpose == STRUT_FOR_RUN || reader->purpose == STRUT_FOR_RUN_STEP_LATER) &&
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER)->state == STRUT_ABSENT;
   if (experiment->accuracy_assumed) experiment->accuracy = STRUT_USUAL_ACCURACY;
   const strut_tree *accuracy = strut_given(&reader->solver, STRUT_KEY_SOLVER_ACCURACY);

@@ -77,8 +77,6 @@ static strut_status apply_settings(const strut_arguments *arguments, strut_exper
     return strut_usage_error(
         arguments,
         "the solver has no step, which only adaptive and adaptive8 do without: give --step");
-  if (experiment->accuracy > 1.0)
-    return strut_usage_error(arguments, "--accuracy must be at most 1, that is 100%%");
   return STRUT_OK;
 }
 
