@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Vectors of the plane, sums over arrays, the constants of angles, and numbers that look random.
+ * Vectors of the plane, sums over arrays, angles, interpolation, and numbers that look random.
  *
  * Lengths are roots of sums of squares, never hypot: that has the same bits on every machine, and the
  * check of scenes keeps coordinates far from where squares overflow.

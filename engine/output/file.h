@@ -11,7 +11,7 @@
 /*
  * Folders in which results are gathered before they move to where they belong.
  *
- * A process that is killed cannot remove its own. Whoever writes into the same place later does: each
+ * A process that is killed cannot remove its own; the next one that writes into the same place does. Each
  * such folder names its machine in a file and is locked for as long as its process lives, so that one
  * without a lock, of this machine, is abandoned. All others stay.
  */

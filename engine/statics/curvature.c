@@ -96,7 +96,7 @@ struct strut_curvature {
   double scale;   /* no |eigenvalue| is larger */
   strut_ldl *ldl; /* NULL: there are few coordinates */
   strut_inertia inertia;
-  double shift;                      /* of the factor at hand; NAN: there is none */
+  double shift;                      /* of the current factor; NAN without one */
   strut_spectrum_workspace *spectra; /* NULL: there are too many coordinates for modes */
   const double *q;                   /* where it was decomposed last; NULL before */
   bool has_modes;                    /* `now` is filled */

@@ -28,7 +28,7 @@ STRUT_API strut_status strut_table_draw(const strut_plot *plot, const strut_stud
 /* Tables from tables: rows of a text, or those of a second side less the first. */
 
 /**
- * The rows with `text` in a column, unless there is none, that are `shown` (rows), unless that is NULL. STRUT_USAGE where
+ * The rows that have `text` in a column (or any, STRUT_NO_COLUMN) and are `shown` (rows; NULL: all). STRUT_USAGE where
  * none has the text; STRUT_NO_MEMORY. `chosen`, zero-initialised, refers to texts and numbers of `from`
  * and has room for two more columns.
  */

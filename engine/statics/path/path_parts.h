@@ -365,7 +365,7 @@ typedef struct strut_path_walk {
   double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
   double *fork, *values, *scale;  /* (2 n + 2) scratch; (n) eigenvalues at y, and scratch */
   double *earlier_values;         /* (n) at the point before, if nothing jumped since */
-  double earlier;                 /* how far back that is; 0: there is none */
+  double earlier;                 /* how far back that is; 0: not known */
   /** A short part of the latest step with what changes on it. */
   struct {
     double *from, *tangent, *to;

@@ -33,7 +33,7 @@ typedef enum strut_fit_verdict {
 typedef struct strut_fit_estimate {
   const char *name, *unit; /* unit "1": none */
   double value;
-  double error; /* standard error, by the derivatives; HUGE_VAL: there is none */
+  double error; /* standard error, from the derivatives; HUGE_VAL if unknown */
   double low,
       high; /* 95 %, by the profile; NAN: not given, or without an end. Of an alignment by the error */
   double linear_low, linear_high; /* 95 %, by the error */

@@ -375,7 +375,7 @@ static bool is_skewed(const strut_fit_estimate *e) {
   X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
   X("value", "", IN(e->unit, e->value), "of the best fit", .column = {"value"}, .label = {""})     \
   X("standard_error", "", IN(e->unit, isfinite(e->error) ? e->error : (double)NAN),                \
-    "by the derivatives; null: there is none", .column = {"standard_error"},                       \
+    "from the derivatives; null if unknown", .column = {"standard_error"},                         \
     .label = {"standard error"})                                                                   \
   X("low", "", IN(e->unit, e->low), "95 % interval, by the profile; null: not given",              \
     .column = {"low"}, .label = {"95 %, from"})                                                    \

@@ -189,8 +189,8 @@ static bool is_least(const solver *self, const gsl_multifit_nlinear_workspace *w
 }
 
 /*
- * Goes on until steps are short, or none makes the sum smaller. False: these ended, or there were too many, while the sum
- * should still fall.
+ * Iterates until steps are short, or none makes the sum smaller. False: steps ran out, or their number did, while the
+ * sum should still fall.
  */
 static bool converge(const solver *self, gsl_multifit_nlinear_workspace *workspace, double first) {
   int info = 0;

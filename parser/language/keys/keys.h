@@ -225,7 +225,7 @@ typedef struct strut_spelling {
 /** The other spelling of a key (`key` NULL) or of a word, or NULL. */
 STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                                     const char *text);
-/** What a message suggests for a likely first guess of a key, such as "k"; NULL if it is none. */
+/** The key that a message suggests for a likely first guess, such as "k"; NULL for other words. */
 STRUT_API const char *strut_key_meant(strut_section section, const char *guess);
 /** The i-th spelling, or NULL after the last. */
 STRUT_API const strut_spelling *strut_spelling_at(size_t i);
