@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Vectors of the plane, sums over arrays, angles, interpolation, and numbers that look random.
+ * Vectors of the plane, sums over arrays, and angles.
  *
  * Lengths are roots of sums of squares, never hypot: that has the same bits on every machine, and the
  * check of scenes keeps coordinates far from where squares overflow.
@@ -9,7 +9,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #define STRUT_PI 3.14159265358979323846
 /** A full turn [rad]. */
@@ -101,38 +100,4 @@ static inline void strut_sincos_turns(double turns, double *sine, double *cosine
   double first = quadrant & 1 ? c : s, second = quadrant & 1 ? s : c;
   *sine = quadrant & 2 ? -first : first;
   *cosine = (quadrant + 1) & 2 ? -second : second;
-}
-
-/** Bits that look random: the last steps of SplitMix64. */
-static inline uint64_t strut_mix_bits(uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-/** -1 to 1, from an index: entries of a vector that leans on no motion. */
-static inline double strut_stirred(uint64_t i) {
-  return (double)(strut_mix_bits((i + 1) * 0x9e3779b97f4a7c15u) >> 11) * 0x1p-52 - 1.0;
-}
-
-/**
- * Cubic Hermite interpolation at the fraction s of a step of length h, from x0 with slope v0 to x1
- * with slope v1.
- */
-static inline double strut_hermite(double x0, double v0, double x1, double v1, double h, double s) {
-  double r = 1.0 - s;
-  return x0 * (1.0 + 2.0 * s) * r * r + h * v0 * s * r * r + x1 * s * s * (3.0 - 2.0 * s) -
-         h * v1 * s * s * r;
-}
-
-typedef struct strut_reading {
-  double at, value;
-} strut_reading;
-
-/** Where the parabola through three readings turns, and its value there. */
-static inline strut_reading strut_vertex(strut_reading a, strut_reading b, strut_reading c) {
-  double left = (b.value - a.value) / (b.at - a.at), right = (c.value - b.value) / (c.at - b.at);
-  double bend = (right - left) / (c.at - a.at);
-  double slope = left + bend * (b.at - a.at); /* at b */
-  return (strut_reading){b.at - 0.5 * slope / bend, b.value - 0.25 * slope * slope / bend};
 }

@@ -157,17 +157,13 @@ typedef struct strut_study_fit {
 } strut_study_fit;
 
 /* ROUNDS: how often is looked beside the best fit while that leads to a better one. */
-enum {
-  STRUT_FIT_ROUNDS = 3,
-  STRUT_FIT_MOST_VARIABLES = 20,
-  STRUT_FIT_MOST_MATCHES = 10,
-  STRUT_FIT_MOST_SERIES = 200
-};
+enum { STRUT_FIT_ROUNDS = 3, STRUT_FIT_MOST_VARIABLES = 20, STRUT_FIT_MOST_MATCHES = 10 };
 
 /* ---- branches ---- */
 
 /** What zeros stand for: of the accuracy; of the steps of a branch, and of a curve over two parameters. */
 #define STRUT_FOLLOW_USUAL_PERCENT 0.1
+#define STRUT_FOLLOW_MOST_ACCURACY 0.1
 #define STRUT_FOLLOW_USUAL_STEPS 400
 #define STRUT_FOLLOW_USUAL_CURVE_STEPS 200
 

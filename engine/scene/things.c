@@ -110,6 +110,28 @@ const strut_configuration *strut_configuration_named(const strut_scene *scene, c
 
 /* ---- fields ---- */
 
+const char *strut_limits_fault(strut_key_limits limits, double number,
+                               char text[STRUT_LIMITS_TEXT]) {
+  strut_key_range range = limits.range;
+  bool whole = range == STRUT_RANGE_WHOLE, share = range == STRUT_RANGE_SHARE;
+  bool inside = number == floor(number) && number >= limits.least && number <= limits.most;
+  char from[40] = "up to";
+  if (limits.least > 0.0) snprintf(from, sizeof from, "from %.0f to", limits.least);
+  if (number < 0.0 && (range == STRUT_RANGE_NOT_NEGATIVE || (whole && limits.least == 0.0)))
+    snprintf(text, STRUT_LIMITS_TEXT, "must not be negative, found %g", number);
+  else if (number <= 0.0 && (range == STRUT_RANGE_ABOVE_ZERO || share))
+    snprintf(text, STRUT_LIMITS_TEXT, "must be above zero, found %g", number);
+  else if (share && number > limits.most)
+    snprintf(text, STRUT_LIMITS_TEXT, "must be at most %g %%, found %g %%; 1 %% is 0.01",
+             100.0 * limits.most, 100.0 * number);
+  else if (whole && !inside)
+    snprintf(text, STRUT_LIMITS_TEXT, "must be a whole number %s %.0f, found %.15g", from,
+             limits.most, number);
+  else
+    return NULL;
+  return text;
+}
+
 #define STRUT_BELOW(SECTION) 0 /* the engine has no mappings */
 #define FIELD_ROW(section, id, name, type, measure, range, fallback, need, set, words, field, ...) \
   {name, STRUT_LIMITS_##range, STRUT_##need, {STRUT_FIELD_OF_##field}},

@@ -58,12 +58,13 @@ typedef enum strut_key_range {
   STRUT_RANGE_ANY,
   STRUT_RANGE_NOT_NEGATIVE,
   STRUT_RANGE_ABOVE_ZERO,
-  STRUT_RANGE_WHOLE /* a whole number from least to most */
+  STRUT_RANGE_WHOLE, /* a whole number from least to most */
+  STRUT_RANGE_SHARE  /* above zero, up to most; messages give both in percent */
 } strut_key_range;
 
 typedef struct strut_key_limits {
   strut_key_range range;
-  double least, most; /* of WHOLE */
+  double least, most; /* of WHOLE and SHARE */
 } strut_key_limits;
 
 #define STRUT_LIMITS_ANY                                                                           \
@@ -74,6 +75,15 @@ typedef struct strut_key_limits {
   { STRUT_RANGE_ABOVE_ZERO, 0.0, 0.0 }
 #define STRUT_LIMITS_WHOLE(least, most)                                                            \
   { STRUT_RANGE_WHOLE, least, most }
+#define STRUT_LIMITS_SHARE(most)                                                                   \
+  { STRUT_RANGE_SHARE, 0.0, most }
+/** The same as values: STRUT_WITHIN(ANY), STRUT_WITHIN(WHOLE(1, 9)). */
+#define STRUT_WITHIN(range) ((strut_key_limits)STRUT_LIMITS_##range)
+
+/** What is wrong with a number, "must not be negative, found -1", in `text`; NULL: it is within the limits. */
+enum { STRUT_LIMITS_TEXT = 160 };
+STRUT_API const char *strut_limits_fault(strut_key_limits limits, double number,
+                                         char text[STRUT_LIMITS_TEXT]);
 
 typedef enum strut_key_need {
   STRUT_OPTIONAL, /* written only where it differs from the default */

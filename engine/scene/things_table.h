@@ -444,7 +444,7 @@
   X(SOLVER, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, "1e-6", OPTIONAL, 0, "", FIELD(strut_experiment, tolerance), "Relative local error per step of `adaptive`, `adaptive8` and `implicit`.") \
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine), "Factor by which methods with events divide the step after a touchdown; 1: no refinement.") \
   X(SOLVER, REFINE_TIME, "refine_time", NUMBER, TIME, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine_time), "Duration of the refinement after a touchdown.") \
-  X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_experiment, accuracy), "Desired relative accuracy of the measured quantities, such as 1 %, at most 20 %. Method and step are chosen to meet it.") \
+  X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, SHARE(STRUT_MOST_ACCURACY), "", OPTIONAL, 0, "", FIELD(strut_experiment, accuracy), "Desired relative accuracy of the measured quantities, such as 1 %. Method and step are chosen to meet it.") \
   X(SOLVER, BUDGET, "budget", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_USUAL_BUDGET), OPTIONAL, 0, "", FIELD(strut_experiment, budget), "Work limit of `accuracy`, in units of one fine run with a fixed step. A result that would need more is reported as not accurate enough.")
 
 #define STRUT_RUN_FIELDS(X) \
@@ -463,7 +463,7 @@
 #define STRUT_QUANTITY_FIELDS(X) \
   X(QUANTITY, OF, "of", EXPRESSION, NONE, ANY, "", REQUIRED, 0, "", LATER(LIST(strut_quantity_definition, program, length)), "An expression of columns of the motion, which [the language](language.md#measured-quantities) lists.") \
   X(QUANTITY, TAKE, "take", WORD, NONE, ANY, "mean", OPTIONAL, 0, "mean|min|max|range|rms|final|change|rate|rise|arrival", FIELD(strut_quantity_definition, take), "The number taken over the window: `mean` over time, `min`, `max`, `range` (max - min), `rms`, `final` value, `change` from first to last value, `rate` (change / time), `rise` (sum of all increases), or `arrival`, the time at which the expression first reaches or passes `target`, missing if never.") \
-  X(QUANTITY, ACCURACY, "accuracy", NUMBER, CONTEXT, ABOVE_ZERO, "that of the solver", OPTIONAL, 0, "", UNIT(strut_quantity_definition, accuracy, accuracy_unit), "Desired accuracy: relative without a unit, such as 1 %, absolute with a unit, such as 0.1 mm.") \
+  X(QUANTITY, ACCURACY, "accuracy", NUMBER, CONTEXT, SHARE(STRUT_MOST_ACCURACY), "that of the solver", OPTIONAL, 0, "", UNIT(strut_quantity_definition, accuracy, accuracy_unit), "Desired accuracy: relative without a unit, such as 1 %, absolute with a unit, such as 0.1 mm.") \
   X(QUANTITY, TARGET, "target", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_quantity_definition, take, STRUT_TAKE_ARRIVAL, UNIT(strut_quantity_definition, target, target_unit)), "Value for `take: arrival`, reached from below or above, in the unit of the expression.")
 
 #define STRUT_STEADY_FIELDS(X) \

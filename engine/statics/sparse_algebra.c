@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "engine/base/vec.h"
+#include "engine/base/mixed_bits.h"
 
 /* ---- one thread for the BLAS, whose sums have other bits with several ---- */
 

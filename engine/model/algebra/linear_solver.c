@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/vec.h"
+#include "engine/base/mixed_bits.h"
 #include "engine/model/algebra/cholmod_factor.h"
 #include "engine/model/algebra/hot.h"
 

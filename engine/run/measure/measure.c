@@ -5,7 +5,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "engine/base/vec.h"
+#include "engine/base/interpolation.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/vec.h"
+#include "engine/base/interpolation.h"
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces.h"

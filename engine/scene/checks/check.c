@@ -62,18 +62,14 @@ void strut_check_begin_with(strut_checker *checker, strut_subject subject, size_
 }
 
 static bool check_range(strut_checker *checker, const char *name, double value,
-                        strut_key_range range) {
+                        strut_key_limits limits) {
   const char *key = checker->within ? checker->within : name;
+  char text[STRUT_LIMITS_TEXT];
   if (!isfinite(value))
     return strut_fault_of(checker, key, "the %s of %s is not a finite number", name,
                           checker->owner);
-  if (range == STRUT_RANGE_NOT_NEGATIVE && value < 0.0)
-    return strut_fault_of(checker, key, "the %s of %s must not be negative, found %g", name,
-                          checker->owner, value);
-  if (range == STRUT_RANGE_ABOVE_ZERO && value <= 0.0)
-    return strut_fault_of(checker, key, "the %s of %s must be above zero, found %g", name,
-                          checker->owner, value);
-  return true;
+  return !strut_limits_fault(limits, value, text) ||
+         strut_fault_of(checker, key, "the %s of %s %s", name, checker->owner, text);
 }
 
 bool strut_check_fields(strut_checker *checker, strut_thing_section section, const void *object,
@@ -85,17 +81,18 @@ bool strut_check_fields(strut_checker *checker, strut_thing_section section, con
     const strut_field *field = &rows[i].field;
     if (field->type != STRUT_FIELD_DOUBLE || field->role != STRUT_FIELD_VALUE) continue;
     const char *at = (const char *)object + field->offset;
-    strut_key_range range = rows[i].limits.range;
+    strut_key_limits limits = rows[i].limits;
     double value;
     if (usual && rows[i].need == STRUT_OPTIONAL) {
       const char *other = (const char *)usual + field->offset;
       if (memcmp(at, other, sizeof value) == 0) continue; /* not given */
       memcpy(&value, other, sizeof value);
-      if (value == 0.0 && range == STRUT_RANGE_ABOVE_ZERO) range = STRUT_RANGE_NOT_NEGATIVE;
+      if (value == 0.0 && limits.range == STRUT_RANGE_ABOVE_ZERO)
+        limits.range = STRUT_RANGE_NOT_NEGATIVE;
     }
     memcpy(&value, at, sizeof value);
     if (strut_field_is_chosen(field, object))
-      valid = check_range(checker, rows[i].name, value, range) && valid;
+      valid = check_range(checker, rows[i].name, value, limits) && valid;
   }
   return valid;
 }
@@ -113,7 +110,7 @@ bool strut_check_number(strut_checker *checker, strut_thing_section section, con
   const strut_field_row *rows = strut_fields_of(section, &count);
   while (i < count && strcmp(rows[i].name, key) != 0) i++;
   assert(i < count);
-  return check_range(checker, key, value, rows[i].limits.range);
+  return check_range(checker, key, value, rows[i].limits);
 }
 
 /*

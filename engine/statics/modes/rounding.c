@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/mixed_bits.h"
 #include "engine/statics/modes/parts.h"
 
 #include "engine/base/vec.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/vec.h"
+#include "engine/base/interpolation.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 

@@ -9,7 +9,7 @@
 #include <omp.h>
 #endif
 
-#include "engine/base/vec.h"
+#include "engine/base/mixed_bits.h"
 #include "engine/model/pose.h"
 
 /* Single nodes are folded across the line of one member of theirs and the next that leads away. */

@@ -5,7 +5,7 @@
 
 #include "engine/study/search/optimisers.h"
 
-#include "engine/base/vec.h"
+#include "engine/base/mixed_bits.h"
 #include "engine/study/sweep/sweep.h"
 
 /* Generations are multiples of this, on any machine, so that they fill processors. */

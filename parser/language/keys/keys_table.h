@@ -5,7 +5,7 @@
  *
  * X(section, id, name, type, measure, range, default, need, set, words, field, description)
  *
- * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, or WHOLE(least, most) for whole numbers. need: REQUIRED keys must be given;
+ * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, SHARE(most) for shares above zero, or WHOLE(least, most) for whole numbers. need: REQUIRED keys must be given;
  * `strut export` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they differ from the default. set: a
  * mapping may give only one of the keys of a set (not 0). Words are separated by '|'; those of a nested mapping are
  * what messages call it, if not by its key, and of NAMES what they are.
@@ -188,7 +188,7 @@
 
 #define STRUT_CHECK_KEYS(X) \
   X(CHECK, HALF_STEP, "half_step", WORD, NONE, ANY, "no", OPTIONAL, 5, "no|yes", FIELD(strut_study, half_step), "Repeats with half the step, or with half the `accuracy` if the model gives one.") \
-  X(CHECK, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 5, "", FIELD(strut_study, check_accuracy), "Repeats with this accuracy.")
+  X(CHECK, ACCURACY, "accuracy", NUMBER, NONE, SHARE(STRUT_MOST_ACCURACY), "", OPTIONAL, 5, "", FIELD(strut_study, check_accuracy), "Repeats with this accuracy.")
 
 #define STRUT_FIGURE_KEYS(X) \
   X(FIGURE, KIND, "kind", WORD, NONE, ANY, "lines", OPTIONAL, 0, "lines|map|motion|period|snapshots|best|points|winner", FIELD(strut_study_figure, kind), "Of the table: `lines`, or a `map` whose colour shows a value. Of recorded motions, which need `trajectories: yes`: `motion` (lines), `period` and `snapshots` (a picture of each run, as by `strut run --draw`). Of a [search](#search): `best` (best objective over evaluations), `points` (over `x` and `y`) and `winner` (the best model beside the start).") \
@@ -324,7 +324,7 @@
   X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, to), "Upper end of its range.") \
   X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", LIST(strut_study_follow, at, at_count), "Values at which runs find the first motions.") \
   X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "a configuration", LIST(strut_study_follow, start_from, start_count), "Configurations in whose equilibria these runs start.") \
-  X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
+  X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, SHARE(STRUT_FOLLOW_MOST_ACCURACY), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities.") \
   X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "Integration method; it must locate events if there are contacts or cables.") \
   X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch in each direction.") \
   X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kicks the stable motions at the values of `at`, to find how far they may be pushed.")

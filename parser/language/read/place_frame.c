@@ -12,16 +12,11 @@
 static bool read_count(strut_reader *reader, const strut_tree *value, strut_owner owner,
                        int64_t *count) {
   double number;
-  if (!strut_read_number(reader, value, "count", owner, STRUT_DIM_NONE, STRUT_RANGE_ANY, &number))
+  if (!strut_read_number(reader, value, "count", owner, STRUT_DIM_NONE,
+                         STRUT_WITHIN(WHOLE(1, STRUT_MOST_COPIES)), &number))
     return false;
-  if (number >= 1.0 && number <= STRUT_MOST_COPIES && number == floor(number)) {
-    *count = (int64_t)number;
-    return true;
-  }
-  return strut_report_error(
-      reader, value->place,
-      "the number of copies of %s must be a whole number from 1 to %.0f, found %.15g",
-      strut_owner_text(reader, owner), STRUT_MOST_COPIES, number);
+  *count = (int64_t)number;
+  return true;
 }
 
 /* A number, or [n, m]. */
@@ -348,7 +343,7 @@ bool strut_read_frame(strut_expansion *expansion, strut_placing *placing, strut_
   for (int c = 0; c < 2; c++)
     for (int row = 0; row < 2 && placing->keys.flip >> c & 1; row++) frame->axes[row][c] *= -1.0;
   if (scale && !fit &&
-      !strut_read_number(reader, scale, "scale", owner, STRUT_DIM_NONE, STRUT_RANGE_ABOVE_ZERO,
+      !strut_read_number(reader, scale, "scale", owner, STRUT_DIM_NONE, STRUT_WITHIN(ABOVE_ZERO),
                          &frame->scale))
     return false;
   bool two = onto && onto->count == 2;

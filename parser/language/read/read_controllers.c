@@ -288,7 +288,7 @@ static bool read_values(strut_reader *reader, strut_owner owner, strut_fields *f
   relay->on = unit->value;
   if (!off) return true;
   if (!unit->bare)
-    return strut_read_number(reader, off, "off_value", owner, unit->dimension, STRUT_RANGE_ANY,
+    return strut_read_number(reader, off, "off_value", owner, unit->dimension, STRUT_WITHIN(ANY),
                              &relay->off);
   if (!strut_read_any_quantity(reader, off, "off_value", owner, "a number", unit)) return false;
   relay->off = unit->value;

@@ -340,7 +340,7 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
     return;
   }
   strut_dimension dimension = periods->key ? STRUT_DIM_NONE : STRUT_DIM_TIME;
-  if (!strut_read_number(reader, slot->value, "last", owner, dimension, STRUT_RANGE_ABOVE_ZERO,
+  if (!strut_read_number(reader, slot->value, "last", owner, dimension, STRUT_WITHIN(ABOVE_ZERO),
                          last))
     fields->broken = true;
 }
@@ -393,11 +393,6 @@ void strut_read_experiment(strut_reader *reader) {
       (reader->purpose == STRUT_FOR_RUN || reader->purpose == STRUT_FOR_RUN_STEP_LATER) &&
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER)->state == STRUT_ABSENT;
   if (experiment->accuracy_assumed) experiment->accuracy = STRUT_USUAL_ACCURACY;
-  const strut_tree *accuracy = strut_given(&reader->solver, STRUT_KEY_SOLVER_ACCURACY);
-  if (accuracy && experiment->accuracy > STRUT_MOST_ACCURACY)
-    strut_report_error(reader, accuracy->place,
-                       "'accuracy' of the solver must be at most 20 %%, found %g %%; 1 %% is 0.01",
-                       100.0 * experiment->accuracy);
   choose_settling_step(reader);
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))
@@ -483,7 +478,7 @@ static bool read_until(strut_reader *reader, strut_fields *fields, strut_owner o
                               strut_owner_text(reader, owner),
                               strut_sanitised_text(reader, stage->over));
   return !given || strut_read_number(reader, until->value, "until", owner, dimension,
-                                     STRUT_RANGE_ANY, &stage->until);
+                                     STRUT_WITHIN(ANY), &stage->until);
 }
 
 /* `stop: {NODE.x: LENGTH}` */
@@ -497,8 +492,8 @@ static bool read_stop(strut_reader *reader, const strut_tree *map, strut_owner o
                               strut_owner_text(reader, owner), strut_found(reader, map));
   stage->stop = strut_read_coordinate(reader, map->first, "stop", owner);
   if (stage->stop < 0 ||
-      !strut_read_number(reader, map->first->next, "stop", owner, STRUT_DIM_LENGTH, STRUT_RANGE_ANY,
-                         &stage->stop_distance))
+      !strut_read_number(reader, map->first->next, "stop", owner, STRUT_DIM_LENGTH,
+                         STRUT_WITHIN(ANY), &stage->stop_distance))
     return false;
   if (stage->stop_distance != 0.0) return true;
   return strut_report_error(reader, map->first->next->place,

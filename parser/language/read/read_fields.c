@@ -222,10 +222,8 @@ static bool read_version(strut_reader *reader, const strut_tree *value) {
 static bool read_number(strut_reader *reader, const strut_key *key, const strut_tree *value,
                         strut_owner owner, double *number) {
   if (key->measure == STRUT_MEASURE_CONTEXT) return true;
-  bool whole = key->limits.range == STRUT_RANGE_WHOLE;
   return strut_read_number(reader, value, key->name, owner, strut_measure_dimension(key->measure),
-                           whole ? STRUT_RANGE_ANY : key->limits.range, number) &&
-         (!whole || strut_check_whole(reader, value, key, owner, *number));
+                           key->limits, number);
 }
 
 /* Reads a value whose type needs no code of the section's own; false if it was reported. */

@@ -45,7 +45,7 @@ static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owne
     slot->number[1] = index < 0 ? UNREAD : DRIVEN + index;
   } else if (slot->number[1] == UNREAD) {
     bool fine = strut_read_number(reader, slot->value, "mu", owner, STRUT_DIM_NONE,
-                                  STRUT_RANGE_NOT_NEGATIVE, &slot->number[0]);
+                                  STRUT_WITHIN(NOT_NEGATIVE), &slot->number[0]);
     slot->number[1] = fine ? PLAIN : UNREAD;
   }
   if (slot->number[1] == UNREAD) {

@@ -353,10 +353,10 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
         plain ? "" : " or ",
         plain ? "" : strut_dimension_name(dimension, expected, sizeof expected),
         strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-  else if (!(q.value > 0.0))
-    strut_report_error(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
-                       strut_owner_text(reader, owner), q.value);
-  else
+  else if (strut_check_limits(reader, slot->value, "accuracy", owner,
+                              relative ? strut_key_at(STRUT_KEY_QUANTITY_ACCURACY)->limits
+                                       : STRUT_WITHIN(ABOVE_ZERO),
+                              q.value))
     definition->accuracy = q.value, definition->accuracy_unit = relative ? NULL : definition->unit;
 }
 
@@ -370,7 +370,7 @@ static void read_target(strut_reader *reader, strut_fields *fields, strut_owner 
     strut_report_error(reader, fields->key->place, "%s lacks 'target', the value that it waits for",
                        strut_owner_text(reader, owner));
   if (!given || !wanted || !dimension) return;
-  strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_RANGE_ANY,
+  strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_WITHIN(ANY),
                     &definition->target);
   definition->target_unit = strut_keep_unit(reader, *dimension, "1");
 }

@@ -37,7 +37,7 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
   strut_quantity quantity;
   if (self->expected || !self->bare)
     return strut_read_number(reader, value, key, owner,
-                             self->expected ? *self->expected : self->dimension, STRUT_RANGE_ANY,
+                             self->expected ? *self->expected : self->dimension, STRUT_WITHIN(ANY),
                              number);
   if (!strut_read_any_quantity(reader, value, key, owner, "a number", &quantity)) return false;
   *number = quantity.value;
@@ -79,8 +79,8 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
       continue;
     }
     size_t i = signal->point_count++;
-    fine = strut_read_number(reader, point->first, "table", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
-                             &time[i]) &&
+    fine = strut_read_number(reader, point->first, "table", owner, STRUT_DIM_TIME,
+                             STRUT_WITHIN(ANY), &time[i]) &&
            fine;
     fine = read_value(reader, point->first->next, "table", owner, self, &value[i]) && fine;
   }

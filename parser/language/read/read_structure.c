@@ -194,7 +194,7 @@ static bool read_coefficients(strut_reader *reader, const strut_tree *list, stru
   bool fine = c != NULL;
   for (const strut_tree *item = c ? list->first : NULL; item; item = item->next) {
     strut_dimension dimension = per_strain(force, strain, (int)law->count + 1);
-    fine = strut_read_number(reader, item, "coefficients", owner, dimension, STRUT_RANGE_ANY,
+    fine = strut_read_number(reader, item, "coefficients", owner, dimension, STRUT_WITHIN(ANY),
                              &c[law->count++]) &&
            fine;
   }
@@ -217,11 +217,11 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
                                 key, strut_owner_text(reader, owner), strut_found(reader, point));
       continue;
     }
-    fine =
-        strut_read_number(reader, point->first, key, owner, strain, STRUT_RANGE_ANY, &x[i]) && fine;
-    fine =
-        strut_read_number(reader, point->first->next, key, owner, force, STRUT_RANGE_ANY, &y[i]) &&
-        fine;
+    fine = strut_read_number(reader, point->first, key, owner, strain, STRUT_WITHIN(ANY), &x[i]) &&
+           fine;
+    fine = strut_read_number(reader, point->first->next, key, owner, force, STRUT_WITHIN(ANY),
+                             &y[i]) &&
+           fine;
     if (!fine || i == 0 || x[i] > x[i - 1] || law->kind == STRUT_LAW_FOLDING) continue;
     fine = strut_report_error(
         reader, point->place,

@@ -207,7 +207,7 @@ bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, str
   if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
   assert(k->field.type == STRUT_FIELD_DOUBLE);
   strut_store_choice(k, object);
-  return strut_read_number(reader, slot->value, k->name, owner, dimension, k->limits.range,
+  return strut_read_number(reader, slot->value, k->name, owner, dimension, k->limits,
                            (double *)(void *)((char *)object + k->field.offset));
 }
 
@@ -260,7 +260,8 @@ static bool store_direction(strut_reader *reader, const strut_key *key, const st
   bool y = strcmp(value->text, "y") == 0;
   double angle = y ? 0.25 * STRUT_TAU : 0.0;
   if (!y && strcmp(value->text, "x") != 0 &&
-      !strut_read_number(reader, value, key->name, owner, STRUT_DIM_ANGLE, STRUT_RANGE_ANY, &angle))
+      !strut_read_number(reader, value, key->name, owner, STRUT_DIM_ANGLE, STRUT_WITHIN(ANY),
+                         &angle))
     return false;
   *direction = angle;
   if (!strut_scope_of(reader, value)) return true;
@@ -279,9 +280,9 @@ static bool read_numbers(strut_reader *reader, const strut_key *key, const strut
       fine = strut_read_pair(reader, item, key->name, owner, dimension, number) && fine;
       number += 2;
     } else {
-      fine =
-          strut_read_number(reader, item, key->name, owner, dimension, STRUT_RANGE_ANY, number++) &&
-          fine;
+      fine = strut_read_number(reader, item, key->name, owner, dimension, STRUT_WITHIN(ANY),
+                               number++) &&
+             fine;
     }
   }
   return fine;

@@ -248,29 +248,12 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
   return fine;
 }
 
-static bool in_range(strut_reader *reader, const strut_tree *value, const char *key,
-                     strut_owner owner, strut_key_range range, double number) {
-  bool below = range == STRUT_RANGE_NOT_NEGATIVE ? number < 0.0
-                                                 : range == STRUT_RANGE_ABOVE_ZERO && number <= 0.0;
-  if (!below) return true;
-  return strut_report_error(
-      reader, value->place, "'%s' of %s must %s, found %g", key, strut_owner_text(reader, owner),
-      range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
-}
-
-bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
-                       strut_owner owner, double number) {
-  strut_key_limits limits = key->limits;
-  assert(limits.range == STRUT_RANGE_WHOLE && limits.least >= 0.0);
-  if (limits.least == 0.0 &&
-      !in_range(reader, value, key->name, owner, STRUT_RANGE_NOT_NEGATIVE, number))
-    return false;
-  if (number == floor(number) && number >= limits.least && number <= limits.most) return true;
-  char least[40] = "";
-  if (limits.least > 0.0) snprintf(least, sizeof least, "from %.0f ", limits.least);
-  return strut_report_error(
-      reader, value->place, "'%s' of %s must be a whole number %s%s %.0f, found %g", key->name,
-      strut_owner_text(reader, owner), least, *least ? "to" : "up to", limits.most, number);
+bool strut_check_limits(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, strut_key_limits limits, double number) {
+  char text[STRUT_LIMITS_TEXT];
+  return !strut_limits_fault(limits, number, text) ||
+         strut_report_error(reader, value->place, "'%s' of %s %s", key,
+                            strut_owner_text(reader, owner), text);
 }
 
 /* Lengths of a scaled copy are longer, areas more so; other numbers stay. */
@@ -291,7 +274,7 @@ static const char *parameter_given(strut_reader *reader, const strut_tree *value
 }
 
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
-                       strut_owner owner, strut_dimension dimension, strut_key_range range,
+                       strut_owner owner, strut_dimension dimension, strut_key_limits limits,
                        double *number) {
   char expected[200], found[80];
   strut_quantity quantity;
@@ -312,7 +295,7 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
                               per_angle ? "; write (...)/(1 rad)" : parameter_given(reader, value));
   }
   *number = quantity.value;
-  if (!in_range(reader, value, key, owner, range, quantity.value)) return false;
+  if (!strut_check_limits(reader, value, key, owner, limits, quantity.value)) return false;
   if (reader->scope) *number *= scale_of(reader, value, dimension);
   return true;
 }
@@ -321,8 +304,10 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
                      strut_owner owner, strut_dimension dimension, double number[2]) {
   if (value->kind == STRUT_TREE_LIST && value->count == 2) {
     const strut_tree *tree = value->first, *y = tree->next;
-    bool fine = strut_read_number(reader, tree, key, owner, dimension, STRUT_RANGE_ANY, &number[0]);
-    return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
+    bool fine =
+        strut_read_number(reader, tree, key, owner, dimension, STRUT_WITHIN(ANY), &number[0]);
+    return strut_read_number(reader, y, key, owner, dimension, STRUT_WITHIN(ANY), &number[1]) &&
+           fine;
   }
   bool down = strut_dimension_equal(dimension, STRUT_DIM_ACCELERATION);
   const char *example = down ? "0, -9.81 m/s^2" : strut_dimension_example(dimension);

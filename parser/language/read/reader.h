@@ -239,13 +239,13 @@ bool strut_refuse_dimension(strut_reader *reader, const strut_tree *value, const
 /** The same of an expression of columns, whose program the compiler makes. */
 bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner, strut_compiler *compiler, strut_quantity *quantity);
-/** A number of the given dimension in SI; `range` is not WHOLE. */
+/** A number of the given dimension in SI. */
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
-                       strut_owner owner, strut_dimension dimension, strut_key_range range,
+                       strut_owner owner, strut_dimension dimension, strut_key_limits limits,
                        double *number);
-/** Is the number within the limits of a WHOLE key? If not, that is reported. */
-bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
-                       strut_owner owner, double number);
+/** Is the number within the limits? If not, that is reported. */
+bool strut_check_limits(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, strut_key_limits limits, double number);
 bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
                      strut_owner owner, strut_dimension dimension, double number[2]);
 /** Things that a name may refer to. */

@@ -392,9 +392,9 @@ static void read_curve(strut_study_reader *reader, const strut_slot *slot) {
       continue;
     }
     if (strut_read_number(reader->reader, item->first, "curve", curve_owner, STRUT_DIM_LENGTH,
-                          STRUT_RANGE_ANY, &pair[0]) &&
+                          STRUT_WITHIN(ANY), &pair[0]) &&
         strut_read_number(reader->reader, item->first->next, "curve", curve_owner, STRUT_DIM_FORCE,
-                          STRUT_RANGE_ANY, &pair[1]))
+                          STRUT_WITHIN(ANY), &pair[1]))
       study->goal.curve_count++;
   }
 }
@@ -536,10 +536,6 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   if (!follow) return;
   strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,
                     follow);
-  const strut_slot *accuracy = strut_slot_of(&fields, STRUT_KEY_FOLLOW_ACCURACY);
-  if (accuracy->state == STRUT_GIVEN && follow->accuracy > 0.1)
-    strut_report_error(reader->reader, accuracy->value->place,
-                       "'accuracy' of what is followed may be up to 10 %%");
   const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_FOLLOW_START_FROM);
   if (starts->state == STRUT_GIVEN &&
       (!starts->value->count || starts->value->count > STRUT_STUDY_FOLLOW_MOST_FROM))

@@ -251,8 +251,8 @@ static bool read_numbers(strut_study_reader *reader, strut_study_along *along,
   for (const strut_tree *item = slot->value->first; item; item = item->next, i++) {
     bool bare = distribution->kind == STRUT_DISTRIBUTION_LOGNORMAL && i == 1;
     bool read =
-        bare ? strut_read_number(reader->reader, item, name, owner, STRUT_DIM_NONE, STRUT_RANGE_ANY,
-                                 &distribution->number[i])
+        bare ? strut_read_number(reader->reader, item, name, owner, STRUT_DIM_NONE,
+                                 STRUT_WITHIN(ANY), &distribution->number[i])
              : strut_study_read_value(reader, along, item, name, i == 0, &distribution->number[i]);
     fine = fine && read;
   }

@@ -35,9 +35,14 @@ static void put_section_link(strut_writer *writer, const char *name) {
   strut_put(writer, ")");
 }
 
-static void put_limits(strut_writer *writer, strut_key_limits limits) {
+static void put_limits(strut_writer *writer, const strut_key *key) {
+  const strut_key_limits limits = key->limits;
+  bool context = key->measure == STRUT_MEASURE_CONTEXT;
   if (limits.range == STRUT_RANGE_NOT_NEGATIVE) strut_put(writer, ", not negative");
   if (limits.range == STRUT_RANGE_ABOVE_ZERO) strut_put(writer, ", positive");
+  if (limits.range == STRUT_RANGE_SHARE)
+    strut_buffer_add(&writer->out, ", positive, %sat most %g %%", context ? "without a unit " : "",
+                     100.0 * limits.most);
   if (limits.range != STRUT_RANGE_WHOLE) return;
   strut_put(writer, " from ");
   strut_put_number(writer, limits.least);
@@ -61,7 +66,7 @@ void strut_put_key_type(strut_writer *writer, const strut_key *key) {
     put_words(writer, key->words);
   }
   put_unit(writer, key);
-  put_limits(writer, key->limits);
+  put_limits(writer, key);
 }
 
 bool strut_default_is_described(const strut_key *key) {

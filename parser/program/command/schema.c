@@ -338,12 +338,14 @@ static void put_limits(schema *self, const strut_key *key) {
   switch (key->limits.range) {
     case STRUT_RANGE_ANY: break;
     case STRUT_RANGE_NOT_NEGATIVE: put_member(self, "minimum", "0"); break;
+    case STRUT_RANGE_SHARE:
     case STRUT_RANGE_ABOVE_ZERO: put_member(self, "exclusiveMinimum", "0"); break;
     case STRUT_RANGE_WHOLE:
       strut_json_number(&self->json, self->open[self->depth], "minimum", key->limits.least);
-      strut_json_number(&self->json, self->open[self->depth], "maximum", key->limits.most);
       break;
   }
+  if (key->limits.most > 0.0)
+    strut_json_number(&self->json, self->open[self->depth], "maximum", key->limits.most);
 }
 
 /* A default that is a value; the others are in the description. */

@@ -494,13 +494,10 @@ static void read_limit(strut_reader *reader) {
   const strut_key *key = strut_key_at(STRUT_KEY_SCENE_LIMIT_THINGS);
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_LIMIT_THINGS);
   strut_owner owner = {"the scene", NULL};
-  double most;
   reader->limit_things = strtod(key->fallback, NULL);
-  if (slot->state == STRUT_GIVEN &&
-      strut_read_number(reader, slot->value, key->name, owner, STRUT_DIM_NONE, STRUT_RANGE_ANY,
-                        &most) &&
-      strut_check_whole(reader, slot->value, key, owner, most))
-    reader->limit_things = most;
+  if (slot->state == STRUT_GIVEN)
+    strut_read_number(reader, slot->value, key->name, owner, STRUT_DIM_NONE, key->limits,
+                      &reader->limit_things);
 }
 
 const char *strut_limit_hint(strut_reader *reader) {
