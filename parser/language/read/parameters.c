@@ -299,8 +299,8 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   bool known = slot->state != STRUT_BROKEN;
   const strut_tree *map = strut_given(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
-  reader->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
-                                             sizeof *reader->parameters);
+  reader->parameters =
+      strut_scratch_array(reader, map ? map->count : 0, sizeof *reader->parameters);
   if (!reader->parameters) return;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
     strut_declare_parameter(reader, key, &reader->parameters[reader->parameter_count]);
@@ -317,8 +317,7 @@ void strut_keep_parameters(strut_reader *reader) {
   for (size_t i = 0; i < reader->parameter_count; i++)
     point = point || (reader->parameters[i].set && reader->parameters[i].set->known);
   if (reader->failed) return; /* the scene will be discarded */
-  scene->parameters = strut_reader_allocate(reader, &scene->arena, reader->parameter_count,
-                                            sizeof *scene->parameters);
+  scene->parameters = strut_keep_array(reader, reader->parameter_count, sizeof *scene->parameters);
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
     const strut_parameter_state *parameters = &reader->parameters[i];
     if (parameters->value->kind != STRUT_TREE_SCALAR) return; /* reported */
@@ -406,7 +405,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     item.slot.state = item.of_hinge.state = STRUT_BROKEN;
   }
   if (item.slot.state == STRUT_GIVEN && strcmp(strut_key_at(found)->name, "friction") == 0) {
-    item.nested = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *item.nested);
+    item.nested = strut_scratch_array(reader, 1, sizeof *item.nested);
     if (!item.nested) return;
     strut_read_fields(reader, STRUT_SECTION_FRICTION, key->next,
                       (strut_owner){"the friction of group", group->name}, item.nested);
@@ -425,7 +424,7 @@ static void read_group(strut_reader *reader, const strut_tree *key, strut_group 
     group->broken = true;
     return;
   }
-  group->items = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *group->items);
+  group->items = strut_scratch_array(reader, map->count, sizeof *group->items);
   for (const strut_tree *tree = map->first; tree && group->items; tree = tree->next->next)
     read_item(reader, group, tree, owner);
 }
@@ -446,8 +445,7 @@ void strut_read_groups(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
   size_t i = 0;
   if (!map) return;
-  reader->groups =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
+  reader->groups = strut_scratch_array(reader, map->count, sizeof *reader->groups);
   for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
        key = strut_following_entry(reader, key)) {
     reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
@@ -491,8 +489,7 @@ static bool taken(strut_fields *fields, int key) {
   return false;
 }
 
-static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
-                        strut_owner owner) {
+static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group) {
   size_t section = 0;
   while (strut_group_sections[section] != fields->section) section++;
   assert(section < SECTIONS);
@@ -517,15 +514,14 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
       if (item->slot.state == STRUT_BROKEN) continue;
       strut_report_error(reader, item->slot.key->place,
                          "group '%s' gives '%s' to %s, but a %s has no '%s'", group->name,
-                         item->slot.key->text, strut_owner_text(reader, owner),
+                         item->slot.key->text, strut_owner_text(reader, fields->owner),
                          strut_section_name(fields->section), item->slot.key->text);
     }
   }
   if (group->broken) fields->broken = true;
 }
 
-void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_key,
-                        strut_owner owner) {
+void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_key) {
   const strut_slot *slot = strut_slot_of(fields, group_key);
   strut_group *groups[STRUT_MOST_GROUPS];
   if (slot->state == STRUT_BROKEN) {
@@ -533,9 +529,9 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
     strut_suppress_missing(fields);
   }
   if (slot->state != STRUT_GIVEN) return;
-  bool fine = check_names(reader, slot->value, strut_key_at(group_key)->name, owner);
+  bool fine = check_names(reader, slot->value, strut_key_at(group_key)->name, fields->owner);
   size_t count = strut_groups_named(reader, slot->value, groups);
-  while (count > 0) apply_group(reader, fields, groups[--count], owner);
+  while (count > 0) apply_group(reader, fields, groups[--count]);
   if (fine) return;
   reader->groups_unknown = true;
   fields->broken = true; /* the unknown group may have given what seems to be missing */

@@ -90,12 +90,12 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
   if (value->kind != STRUT_TREE_MAP) return read_counts(reader, value, owner, repetition);
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_REPEAT, value, owner, &fields);
-  strut_require(reader, &fields, owner, slot->key->place);
+  strut_require(reader, &fields, slot->key->place);
   const strut_slot *turn = strut_slot_of(&fields, STRUT_KEY_REPEAT_TURN);
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
   const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
   strut_repeat_keys keys = {.scale = 1.0};
-  if (fields.broken || !strut_store(reader, &fields, owner, &keys) ||
+  if (fields.broken || !strut_store(reader, &fields, &keys) ||
       !read_counts(reader, keys.count, owner, repetition))
     return false;
   bool fine = read_steps(reader, keys.step, owner, repetition);

@@ -32,11 +32,11 @@ static double part_length(const strut_reader *reader, const strut_beam *beam) {
 
 /* "rod.3" */
 static const char *part_name(strut_reader *reader, const strut_beam *beam, size_t part) {
-  return strut_formatted(reader, &reader->scene->arena, "%s.%zu", beam->name, part);
+  return strut_kept_text(reader, "%s.%zu", beam->name, part);
 }
 
 static const char *clamp_name(strut_reader *reader, const strut_beam *beam, bool end) {
-  return strut_formatted(reader, &reader->scene->arena, "%s.%s", beam->name, end ? "end" : "start");
+  return strut_kept_text(reader, "%s.%s", beam->name, end ? "end" : "start");
 }
 
 /* A thing of the beam; NULL where its name is taken, which is reported once for the beam. */
@@ -82,8 +82,8 @@ static bool read_beam(strut_reader *reader, const strut_tree *key, strut_beam *b
                        .node = {-1, -1},
                        .parts = STRUT_USUAL_PARTS};
   strut_read_fields_of(reader, STRUT_SECTION_BEAM, key, owner, &fields);
-  strut_require(reader, &fields, owner, key->place);
-  fine = strut_store(reader, &fields, owner, beam) && fine;
+  strut_require(reader, &fields, key->place);
+  fine = strut_store(reader, &fields, beam) && fine;
   const strut_slot *clamped = strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED);
   fine = read_clamped_to(reader, strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED_TO), beam) && fine;
   return fine && !fields.broken && check_ends(reader, key, clamped, beam);
@@ -121,8 +121,7 @@ void strut_read_beams(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_BEAMS);
   size_t parts = 0, clamps = 0;
   if (!map || !scene->nodes) return;
-  reader->beams =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->beams);
+  reader->beams = strut_scratch_array(reader, map->count, sizeof *reader->beams);
   for (const strut_tree *key = strut_first_entry(reader, map); key && reader->beams;
        key = strut_following_entry(reader, key)) {
     strut_beam *beam = &reader->beams[reader->beam_count];
@@ -141,8 +140,8 @@ void strut_read_beams(strut_reader *reader) {
     reader->beam_count = 0;
   }
   if (!reader->beam_count || strut_diagnostics_full(reader->diagnostics)) return;
-  const strut_tree **moves = strut_reader_allocate(
-      reader, &reader->scratch, scene->node_count + parts + clamps, sizeof *moves);
+  const strut_tree **moves =
+      strut_scratch_array(reader, scene->node_count + parts + clamps, sizeof *moves);
   if (!moves || !strut_reserve_things(reader, STRUT_THING_NODE, parts + clamps)) return;
   memcpy(moves, reader->node_moves, scene->node_count * sizeof *moves);
   reader->node_moves = moves;
@@ -330,7 +329,7 @@ static bool make_couplings(strut_reader *reader, joints *self) {
   int32_t **arrays[] = {&self->parent, &self->rigid, &self->target, &self->next, &self->last};
   self->reader = reader;
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    *arrays[i] = strut_reader_allocate(reader, &reader->scratch, ends, sizeof(int32_t));
+    *arrays[i] = strut_scratch_array(reader, ends, sizeof(int32_t));
     if (!*arrays[i]) return false;
   }
   for (int32_t e = 0; e < (int32_t)ends; e++) {
@@ -375,8 +374,8 @@ static void add_coupling_hinge(const joints *self, int32_t end, int32_t other_no
                                const char *other, double stiffness, double time) {
   strut_beam *beam = beam_of(self, end);
   const char *name =
-      strut_formatted(self->reader, &self->reader->scene->arena, "%s.%s%s%s", beam->name,
-                      end % 2 ? "end" : "start", other ? "." : "", other ? other : "");
+      strut_kept_text(self->reader, "%s.%s%s%s", beam->name, end % 2 ? "end" : "start",
+                      other ? "." : "", other ? other : "");
   const int32_t node[3] = {other_node, beam->node[end % 2], inner_node(beam, end % 2)};
   if (beam->broken) return;
   put_hinge(self->reader, beam, name, node, stiffness, time * stiffness, (double)NAN);

@@ -68,8 +68,8 @@ static size_t add_pairs(strut_reader *reader, const strut_collision *like,
       if (!(one || other) || !apart(scene, i, j, like->thickness)) continue;
       if (to) {
         to[count] = *like;
-        to[count].name = strut_formatted(reader, reader->keep, "%s_%s_%s", like->name,
-                                         scene->members[i].name, scene->members[j].name);
+        to[count].name = strut_kept_text(reader, "%s_%s_%s", like->name, scene->members[i].name,
+                                         scene->members[j].name);
         to[count].member[0] = (int32_t)i, to[count].member[1] = (int32_t)j;
       }
       count++;
@@ -136,8 +136,8 @@ static void replace_collisions(strut_reader *reader, const body_pairs *pairs, si
                                size_t total) {
   strut_scene *scene = reader->scene;
   strut_things_read *read = &reader->things[STRUT_THING_COLLISION];
-  strut_collision *all = strut_reader_allocate(reader, &scene->arena, total + 1, sizeof *all);
-  strut_source *source = strut_reader_allocate(reader, &reader->scratch, total + 1, sizeof *source);
+  strut_collision *all = strut_keep_array(reader, total + 1, sizeof *all);
+  strut_source *source = strut_scratch_array(reader, total + 1, sizeof *source);
   if (!all || !source) return;
   size_t count = 0;
   for (size_t i = 0; i < given; i++) {
@@ -164,7 +164,7 @@ void strut_read_bodies(strut_reader *reader) {
   size_t given = scene->collision_count + all, total = 0;
   bool many = all;
   if (!given) return;
-  body_pairs *pairs = strut_reader_allocate(reader, &reader->scratch, given, sizeof *pairs);
+  body_pairs *pairs = strut_scratch_array(reader, given, sizeof *pairs);
   for (size_t i = 0; pairs && i < scene->collision_count; i++) {
     if (!find_pairs(reader, &reader->things[STRUT_THING_COLLISION].source[i], &scene->collisions[i],
                     &pairs[i])) {

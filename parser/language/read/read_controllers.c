@@ -42,8 +42,7 @@ static strut_instruction read_letter(strut_reader *reader, char letter, va_list 
 static void put(strut_program_builder *self, strut_instruction instruction) {
   if (self->length == self->room) {
     size_t room = 2 * self->room + 64;
-    strut_instruction *code =
-        strut_reader_allocate(self->reader, &self->reader->scratch, room, sizeof *code);
+    strut_instruction *code = strut_scratch_array(self->reader, room, sizeof *code);
     if (!code) return;
     if (self->length) memcpy(code, self->code, self->length * sizeof *code);
     self->code = code, self->room = room;
@@ -61,8 +60,7 @@ void strut_build(strut_program_builder *self, const char *postfix, ...) {
 }
 
 strut_program strut_built(const strut_program_builder *self) {
-  strut_instruction *code =
-      strut_reader_allocate(self->reader, &self->reader->scene->arena, self->length, sizeof *code);
+  strut_instruction *code = strut_keep_array(self->reader, self->length, sizeof *code);
   if (code && self->length) memcpy(code, self->code, self->length * sizeof *code);
   return (strut_program){
       .length = code ? self->length : 0, .depth = self->most, .instruction = code};
@@ -70,7 +68,7 @@ strut_program strut_built(const strut_program_builder *self) {
 
 const char *strut_made_name(strut_reader *reader, const strut_tree *key, const char *what,
                             const char *end, const strut_name_map *taken) {
-  const char *name = strut_formatted(reader, reader->keep, "%s_%s", key->text, end);
+  const char *name = strut_kept_text(reader, "%s_%s", key->text, end);
   strut_column column;
   strut_dimension dimension;
   bool variable = !taken && (strut_find_sensed(reader, name, &column, &dimension) ||
@@ -131,7 +129,7 @@ bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t 
   strut_dimension rate = STRUT_DIM_FREQUENCY;
   strut_program_builder b = {.reader = reader};
   strut_read_fields(reader, STRUT_SECTION_OSCILLATOR, key->next, owner, &fields);
-  strut_store(reader, &fields, owner, &o);
+  strut_store(reader, &fields, &o);
   bool fine = read_feedback(reader, o.feedback, owner, &feedback, &rate);
   if (fields.broken) return false;
   strut_build(&b, "#", STRUT_TAU * o.frequency, rate);
@@ -167,8 +165,7 @@ typedef struct controller {
 } controller;
 
 /* The numbers beside the gain, which decides what the signal measures. */
-static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                         controller *self) {
+static bool read_numbers(strut_reader *reader, strut_fields *fields, controller *self) {
   const struct {
     int key;
     strut_dimension dimension;
@@ -179,8 +176,7 @@ static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_owner
                  {STRUT_KEY_CONTROLLER_MOST, self->signal}};
   bool fine = true;
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-    fine = strut_store_number(reader, fields, numbers[i].key, owner, numbers[i].dimension,
-                              &self->keys) &&
+    fine = strut_store_number(reader, fields, numbers[i].key, numbers[i].dimension, &self->keys) &&
            fine;
   return fine;
 }
@@ -235,9 +231,9 @@ static int32_t read_pid(strut_reader *reader, const strut_tree *key) {
   strut_program_builder b = {.reader = reader};
   strut_read_fields_of(reader, STRUT_SECTION_CONTROLLER, key, owner, &fields);
   if (strut_slot_of(&fields, STRUT_KEY_CONTROLLER_KIND)->state == STRUT_BROKEN) return -1;
-  strut_require(reader, &fields, owner, key->place);
+  strut_require(reader, &fields, key->place);
   if (fields.broken) return -1;
-  strut_store(reader, &fields, owner, &c.keys);
+  strut_store(reader, &fields, &c.keys);
   if (c.keys.sensor < 0 || reader->things[STRUT_THING_SENSOR].source[c.keys.sensor].broken)
     return -1;
   const strut_tree *value = strut_given(&fields, STRUT_KEY_CONTROLLER_GAIN);
@@ -248,7 +244,7 @@ static int32_t read_pid(strut_reader *reader, const strut_tree *key) {
   c.keys.gain = gain.value, c.sensed = sensed, c.gained = gained;
   c.signal = (strut_dimension){gained.kg + sensed.kg, gained.m + sensed.m, gained.s + sensed.s,
                                gained.angle + sensed.angle};
-  if (!read_numbers(reader, &fields, owner, &c) || !check_controller(reader, key, &c)) return -1;
+  if (!read_numbers(reader, &fields, &c) || !check_controller(reader, key, &c)) return -1;
   if (c.keys.integral != 0.0 && !add_integral(reader, key, &c)) return -1;
   put_control(&b, &c, true);
   strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
@@ -265,8 +261,8 @@ bool strut_is_relay(const strut_tree *map) {
 
 /* ---- relays: controllers that switch between two values ---- */
 
-static bool read_thresholds(strut_reader *reader, const strut_tree *key, strut_owner owner,
-                            strut_fields *fields, strut_dimension input, strut_signal *relay) {
+static bool read_thresholds(strut_reader *reader, const strut_tree *key, strut_fields *fields,
+                            strut_dimension input, strut_signal *relay) {
   bool above = strut_given(fields, STRUT_KEY_RELAY_ON_ABOVE) != NULL;
   int first = above ? STRUT_KEY_RELAY_ON_ABOVE : STRUT_KEY_RELAY_OFF_ABOVE;
   int second = above ? STRUT_KEY_RELAY_OFF_BELOW : STRUT_KEY_RELAY_ON_BELOW;
@@ -275,22 +271,24 @@ static bool read_thresholds(strut_reader *reader, const strut_tree *key, strut_o
         reader, key->place,
         "controller '%s' needs two thresholds: on_above with off_below, or on_below with off_above",
         key->text);
-  bool fine = strut_store_number(reader, fields, first, owner, input, relay);
-  return strut_store_number(reader, fields, second, owner, input, relay) && fine;
+  bool fine = strut_store_number(reader, fields, first, input, relay);
+  return strut_store_number(reader, fields, second, input, relay) && fine;
 }
 
 /* The two values, which measure the same; what that is, the use of the signal decides for plain numbers. */
-static bool read_values(strut_reader *reader, strut_owner owner, strut_fields *fields,
-                        strut_relay *relay, strut_quantity *unit) {
+static bool read_values(strut_reader *reader, strut_fields *fields, strut_relay *relay,
+                        strut_quantity *unit) {
   const strut_tree *on = strut_given(fields, STRUT_KEY_RELAY_ON_VALUE),
                    *off = strut_given(fields, STRUT_KEY_RELAY_OFF_VALUE);
-  if (!strut_read_any_quantity(reader, on, "on_value", owner, "a number", unit)) return false;
+  if (!strut_read_any_quantity(reader, on, "on_value", fields->owner, "a number", unit))
+    return false;
   relay->on = unit->value;
   if (!off) return true;
   if (!unit->bare)
-    return strut_read_number(reader, off, "off_value", owner, unit->dimension, STRUT_WITHIN(ANY),
-                             &relay->off);
-  if (!strut_read_any_quantity(reader, off, "off_value", owner, "a number", unit)) return false;
+    return strut_read_number(reader, off, "off_value", fields->owner, unit->dimension,
+                             STRUT_WITHIN(ANY), &relay->off);
+  if (!strut_read_any_quantity(reader, off, "off_value", fields->owner, "a number", unit))
+    return false;
   relay->off = unit->value;
   return true;
 }
@@ -303,13 +301,13 @@ static int32_t read_relay(strut_reader *reader, const strut_tree *key) {
   const strut_tree *of = strut_tree_find(key->next, "of", NULL);
   if (strut_ends_at_comma(reader, of, "of", owner)) return -1;
   strut_read_fields(reader, STRUT_SECTION_RELAY, key->next, owner, &fields);
-  strut_require(reader, &fields, owner, key->place);
+  strut_require(reader, &fields, key->place);
   if (fields.broken || !strut_read_signal_program(reader, of, "of", owner, &signal.program, &input))
     return -1;
-  strut_store(reader, &fields, owner, &signal);
-  bool fine = read_thresholds(reader, key, owner, &fields,
-                              input.bare ? STRUT_DIM_NONE : input.dimension, &signal);
-  fine = read_values(reader, owner, &fields, &signal.relay, &unit) && fine;
+  strut_store(reader, &fields, &signal);
+  bool fine =
+      read_thresholds(reader, key, &fields, input.bare ? STRUT_DIM_NONE : input.dimension, &signal);
+  fine = read_values(reader, &fields, &signal.relay, &unit) && fine;
   return fine ? strut_add_controller_signal(reader, key, &signal, unit.dimension, unit.bare, NULL)
               : -1;
 }
@@ -391,8 +389,8 @@ static void read_pipe(strut_reader *reader, const strut_tree *key) {
   strut_program_builder b = {.reader = reader};
   bool fine = strut_check_variable_name(reader, key, "state");
   strut_read_fields_of(reader, STRUT_SECTION_PIPE, key, owner, &fields);
-  strut_require(reader, &fields, owner, key->place);
-  if (fields.broken || !fine || !strut_store(reader, &fields, owner, &pipe) || pipe.cell[0] < 0 ||
+  strut_require(reader, &fields, key->place);
+  if (fields.broken || !fine || !strut_store(reader, &fields, &pipe) || pipe.cell[0] < 0 ||
       pipe.cell[1] < 0)
     return;
   if (pipe.cell[0] == pipe.cell[1]) {
@@ -414,8 +412,7 @@ static void read_pipe(strut_reader *reader, const strut_tree *key) {
 void strut_read_pipes(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_PIPES);
   if (!map || !reader->scene->sensors || !reader->scene->states) return;
-  reader->pipe_drives =
-      strut_reader_allocate(reader, &reader->scratch, 2 * map->count, sizeof *reader->pipe_drives);
+  reader->pipe_drives = strut_scratch_array(reader, 2 * map->count, sizeof *reader->pipe_drives);
   for (const strut_tree *key = strut_first_entry(reader, map); key && reader->pipe_drives;
        key = strut_following_entry(reader, key))
     read_pipe(reader, key);

@@ -102,7 +102,7 @@ static bool keep_units(loader *self, const strut_tree *map) {
   const strut_owner owner = {"the units of data", table->name};
   strut_quantity q;
   bool fine = true;
-  table->units = strut_reader_allocate(reader, reader->keep, 2 * map->count, sizeof(char *));
+  table->units = strut_keep_array(reader, 2 * map->count, sizeof(char *));
   for (const strut_tree *key = table->units ? map->first : NULL; key; key = key->next->next) {
     const char *unit = key->next->text;
     if (!strut_read_scalar(reader, key->next, key->text, owner, "a unit such as mm"))
@@ -159,7 +159,7 @@ static void read_numbers(loader *self, size_t i) {
   size_t rows = self->table->row_count, skip = (size_t)self->table->skip;
   int power;
   double factor = find_unit(self, i, &power);
-  double *values = strut_reader_allocate(self->reader, self->reader->keep, rows, sizeof *values);
+  double *values = strut_keep_array(self->reader, rows, sizeof *values);
   for (size_t k = 0; k < rows && values; k++) {
     const char *cell = csv->cell[(1 + skip + k) * csv->column_count + i];
     column->flaw = k;
@@ -329,7 +329,7 @@ static bool make_columns(loader *self) {
     return strut_report_error(reader, value_of(self, STRUT_KEY_DATA_SKIP)->place,
                               "all rows are left out, expected a 'skip' below %zu, their number",
                               self->csv.row_count);
-  self->columns = strut_reader_allocate(reader, reader->keep, count, sizeof *self->columns);
+  self->columns = strut_keep_array(reader, count, sizeof *self->columns);
   if (!self->columns) return false;
   table->columns = self->columns, table->column_count = count;
   table->row_count = self->csv.row_count - (size_t)table->skip;
@@ -408,8 +408,8 @@ static bool read_table(strut_reader *reader, const strut_tree *key, strut_data_t
     fine = strut_report_error(reader, key->place,
                               "a name of data has no dot: one ends it, as in film.x");
   strut_read_fields_of(reader, STRUT_SECTION_DATA, key, owner, &l.fields);
-  strut_require(reader, &l.fields, owner, key->place);
-  fine = strut_store(reader, &l.fields, owner, table) && fine && !l.fields.broken;
+  strut_require(reader, &l.fields, key->place);
+  fine = strut_store(reader, &l.fields, table) && fine && !l.fields.broken;
   return fine && read_scale(&l, owner) && read_file(&l);
 }
 
@@ -418,8 +418,7 @@ void strut_read_data(strut_reader *reader, const strut_slot *slot) {
   if (slot->state != STRUT_GIVEN || reader->tables) return;
   strut_name_map parameters = reader->parameter_names;
   reader->parameter_names = (strut_name_map){0}; /* a file is read once for all their values */
-  strut_data_table *tables =
-      strut_reader_allocate(reader, reader->keep, slot->value->count, sizeof *tables);
+  strut_data_table *tables = strut_keep_array(reader, slot->value->count, sizeof *tables);
   for (const strut_tree *key = tables ? slot->value->first : NULL; key; key = key->next->next) {
     bool fine = read_table(reader, key, &tables[reader->table_count]);
     reader->table_count += fine ? 1 : 0;

@@ -30,7 +30,7 @@ static bool read_set(strut_reader *reader, const strut_tree *list, const char *k
   for (const strut_tree *item = list->first; item; item = item->next)
     for (int32_t n = -1; strut_is_pattern(item) && (n = strut_next_match(reader, item, n)) >= 0;)
       most++;
-  set->node = strut_reader_allocate(reader, &reader->scene->arena, most, sizeof *set->node);
+  set->node = strut_keep_array(reader, most, sizeof *set->node);
   if (!set->node) return false;
   for (const strut_tree *item = list->first; item; item = item->next) {
     if (strut_is_pattern(item) && strut_next_match(reader, item, -1) >= 0) {
@@ -62,7 +62,7 @@ bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_ow
         strut_owner_text(reader, owner), lists ? "a list of both" : strut_found(reader, list));
   if (!strut_entries(reader, STRUT_KEY_SCENE_NODES)) return false;
   alternatives = lists ? lists : 1;
-  *sets = strut_reader_allocate(reader, &reader->scene->arena, alternatives, sizeof **sets);
+  *sets = strut_keep_array(reader, alternatives, sizeof **sets);
   if (!*sets) return false;
   *count = alternatives;
   if (!lists) return read_set(reader, list, key, owner, *sets);
@@ -109,7 +109,7 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
   if (!keys_only(reader, map, owner)) return false;
   strut_read_fields(reader, STRUT_SECTION_CONFIGURATION, map, owner, &fields);
   const strut_tree *shape = strut_given(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
-  bool fine = strut_store(reader, &fields, owner, configuration) && !fields.broken;
+  bool fine = strut_store(reader, &fields, configuration) && !fields.broken;
   configuration->shaped = shape != NULL;
   return (!shape || strut_read_node_pairs(reader, shape, owner, STRUT_DIM_LENGTH, take_position)) &&
          fine;
@@ -121,8 +121,8 @@ bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void 
   strut_owner owner = {"configuration", key->text};
   const strut_tree *value = key->next;
   bool keys = false;
-  configuration->position = strut_reader_allocate(reader, &reader->scene->arena, scene->node_count,
-                                                  sizeof *configuration->position);
+  configuration->position =
+      strut_keep_array(reader, scene->node_count, sizeof *configuration->position);
   if (!configuration->position) return false;
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
@@ -163,7 +163,7 @@ static int32_t find_configuration(strut_reader *reader, int key) {
 void strut_read_search(strut_reader *reader) {
   if (strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
                          search_owner.kind, &reader->search) &&
-      !strut_store(reader, &reader->search, search_owner, &reader->experiment->search))
+      !strut_store(reader, &reader->search, &reader->experiment->search))
     reader->search.broken = true;
 }
 
@@ -197,8 +197,7 @@ static void read_switch(strut_reader *reader, strut_fields *of, int key, const c
                        strut_found(reader, value));
   if (!map) return;
   strut_read_fields(reader, strut_section_below(k), value, within, fields);
-  strut_store_fields(reader, fields, within, &reader->scene->arena, e + k->field.offset,
-                     k->field.size);
+  strut_store_fields(reader, fields, e + k->field.offset, k->field.size);
 }
 
 /* Positions and velocities: of all nodes first, then of single ones. */
@@ -219,8 +218,8 @@ static void read_state(strut_reader *reader, int32_t configuration) {
       for (int c = 0; c < 2; c++)
         scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
   if (!velocities) return;
-  reader->velocity_source = strut_reader_allocate(reader, &reader->scratch, scene->node_count,
-                                                  sizeof *reader->velocity_source);
+  reader->velocity_source =
+      strut_scratch_array(reader, scene->node_count, sizeof *reader->velocity_source);
   strut_read_node_pairs(reader, velocities,
                         (strut_owner){"'velocities' of the initial state", NULL},
                         STRUT_DIM_VELOCITY, store_velocity);
@@ -325,8 +324,7 @@ static void read_of(strut_reader *reader) {
 }
 
 /* The length of a window: in periods if the run is in periods, otherwise in seconds. */
-static void read_last(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
-                      double *last) {
+static void read_last(strut_reader *reader, strut_fields *fields, int key, double *last) {
   const strut_slot *slot = strut_slot_of(fields, key);
   const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
   const strut_slot *duration = strut_slot_of(&reader->run, STRUT_KEY_RUN_DURATION);
@@ -336,12 +334,12 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
     if (reader->purpose ==
         STRUT_FOR_STATICS) /* otherwise the missing length of the run is reported */
       strut_report_error(reader, slot->key->place,
-                         "'last' of %s needs a run with a duration or periods", owner.kind);
+                         "'last' of %s needs a run with a duration or periods", fields->owner.kind);
     return;
   }
   strut_dimension dimension = periods->key ? STRUT_DIM_NONE : STRUT_DIM_TIME;
-  if (!strut_read_number(reader, slot->value, "last", owner, dimension, STRUT_WITHIN(ABOVE_ZERO),
-                         last))
+  if (!strut_read_number(reader, slot->value, "last", fields->owner, dimension,
+                         STRUT_WITHIN(ABOVE_ZERO), last))
     fields->broken = true;
 }
 
@@ -352,14 +350,14 @@ static void read_run(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, run.kind, &reader->run))
     return;
   read_of(reader);
-  strut_store(reader, &reader->run, run, experiment);
+  strut_store(reader, &reader->run, experiment);
   const strut_tree *measure = strut_given(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure) {
     strut_read_fields(reader, STRUT_SECTION_MEASURE, measure, owner, &reader->measure);
     read_switch(reader, &reader->measure, STRUT_KEY_MEASURE_STEADY, owner.kind,
                 (strut_owner){"the steady state", NULL}, &reader->steady);
-    read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &experiment->measure_last);
-    strut_store(reader, &reader->measure, owner, experiment);
+    read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, &experiment->measure_last);
+    strut_store(reader, &reader->measure, experiment);
     strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
     const strut_slot *by = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_DERIVATIVES);
     experiment->derivative_count =
@@ -388,7 +386,7 @@ void strut_read_experiment(strut_reader *reader) {
   read_run(reader);
   if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, solver.kind,
                          &reader->solver))
-    strut_store(reader, &reader->solver, solver, experiment);
+    strut_store(reader, &reader->solver, experiment);
   experiment->accuracy_assumed =
       (reader->purpose == STRUT_FOR_RUN || reader->purpose == STRUT_FOR_RUN_STEP_LATER) &&
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER)->state == STRUT_ABSENT;
@@ -397,8 +395,8 @@ void strut_read_experiment(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))
     return;
-  strut_store(reader, &reader->output, output, experiment);
-  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, output, &experiment->output_last);
+  strut_store(reader, &reader->output, experiment);
+  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, &experiment->output_last);
 }
 
 /* ---- stages of a path ---- */
@@ -442,42 +440,42 @@ static const char *read_loads(strut_reader *reader, const strut_tree *value, str
 }
 
 /* What the stage follows, and the dimension of its value; false: reported. */
-static bool read_followed(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                          strut_path_stage *stage, strut_dimension *dimension) {
+static bool read_followed(strut_reader *reader, strut_fields *fields, strut_path_stage *stage,
+                          strut_dimension *dimension) {
   const strut_tree *load = strut_given(fields, STRUT_KEY_STAGE_LOAD),
                    *over = strut_given(fields, STRUT_KEY_STAGE_OVER),
                    *release = strut_given(fields, STRUT_KEY_STAGE_RELEASE);
   *dimension = STRUT_DIM_NONE;
-  if (load) return (stage->load = read_loads(reader, load, owner));
-  if (release) return strut_read_coordinate(reader, release, "release", owner) >= 0;
+  if (load) return (stage->load = read_loads(reader, load, fields->owner));
+  if (release) return strut_read_coordinate(reader, release, "release", fields->owner) >= 0;
   *dimension = STRUT_DIM_LENGTH;
   int32_t actuator = strut_find_thing(reader, STRUT_THING_ACTUATOR, NULL, over->text);
-  if (actuator < 0) return strut_read_coordinate(reader, over, "over", owner) >= 0;
+  if (actuator < 0) return strut_read_coordinate(reader, over, "over", fields->owner) >= 0;
   const strut_actuator *a = &reader->scene->actuators[actuator];
   if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
   if (!a->force) return true;
   return strut_report_error(
       reader, over->place,
       "actuator '%s' in 'over' of %s gives a force, which statics leaves out; use a load", a->name,
-      strut_owner_text(reader, owner));
+      strut_owner_text(reader, fields->owner));
 }
 
 /* Where it ends: 1 of a load, 0 of a release, else it must be given. */
-static bool read_until(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                       strut_dimension dimension, strut_path_stage *stage) {
+static bool read_until(strut_reader *reader, strut_fields *fields, strut_dimension dimension,
+                       strut_path_stage *stage) {
   const strut_slot *until = strut_slot_of(fields, STRUT_KEY_STAGE_UNTIL);
   bool given = until->state == STRUT_GIVEN;
   stage->until = stage->load ? 1.0 : 0.0;
   if (stage->release && given)
     return strut_report_error(reader, until->key->place,
                               "%s gives 'until' beside 'release', which ends without reaction",
-                              strut_owner_text(reader, owner));
+                              strut_owner_text(reader, fields->owner));
   if (stage->over && !given)
     return strut_report_error(reader, strut_slot_of(fields, STRUT_KEY_STAGE_OVER)->key->place,
                               "%s lacks 'until', the end value of '%s'",
-                              strut_owner_text(reader, owner),
+                              strut_owner_text(reader, fields->owner),
                               strut_sanitised_text(reader, stage->over));
-  return !given || strut_read_number(reader, until->value, "until", owner, dimension,
+  return !given || strut_read_number(reader, until->value, "until", fields->owner, dimension,
                                      STRUT_WITHIN(ANY), &stage->until);
 }
 
@@ -505,7 +503,7 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
                        strut_path_stage *stage) {
   strut_fields fields;
   strut_dimension dimension;
-  strut_owner owner = {strut_formatted(reader, &reader->scratch, "stage %d", number), NULL};
+  strut_owner owner = {strut_scratch_text(reader, "stage %d", number), NULL};
   if (item->kind != STRUT_TREE_MAP)
     return strut_report_error(reader, item->place,
                               "expected a stage such as {load: NAME}, found %s",
@@ -515,8 +513,8 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
   if (!strut_given(&fields, STRUT_KEY_STAGE_LOAD) && !stage->over && !stage->release)
     return strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'",
                               owner.kind);
-  fine = read_followed(reader, &fields, owner, stage, &dimension) &&
-         read_until(reader, &fields, owner, dimension, stage) && fine;
+  fine = read_followed(reader, &fields, stage, &dimension) &&
+         read_until(reader, &fields, dimension, stage) && fine;
   return read_stop(reader, strut_given(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;
 }
 
@@ -525,8 +523,7 @@ static bool check_releases(strut_reader *reader, const strut_tree *item) {
   const strut_scene *scene = reader->scene;
   const strut_experiment *experiment = reader->experiment;
   bool fine = true;
-  uint8_t *held =
-      strut_reader_allocate(reader, &reader->scratch, 2 * scene->node_count, sizeof *held);
+  uint8_t *held = strut_scratch_array(reader, 2 * scene->node_count, sizeof *held);
   if (!held) return false;
   for (size_t i = 0; i < 2 * scene->node_count; i++) held[i] = scene->nodes[i / 2].fixed[i % 2];
   for (size_t k = 0; item; item = item->next, k++) {
@@ -574,7 +571,7 @@ void strut_read_stages(strut_reader *reader) {
   }
   strut_read_fields(reader, STRUT_SECTION_SCENE_PATH, value, owner, &path);
   if (path.broken) return;
-  strut_store(reader, &path, owner, experiment);
+  strut_store(reader, &path, experiment);
   const strut_tree *stages = strut_given(&path, STRUT_KEY_SCENE_PATH_STAGES);
   if (!strut_mentions(&path, STRUT_KEY_SCENE_PATH_STAGES) &&
       !strut_mentions(&path, STRUT_KEY_SCENE_PATH_FRICTION))
@@ -588,8 +585,7 @@ void strut_read_stages(strut_reader *reader) {
                        strut_found(reader, stages));
     return;
   }
-  experiment->stages = strut_reader_allocate(reader, &reader->scene->arena, stages->count,
-                                             sizeof *experiment->stages);
+  experiment->stages = strut_keep_array(reader, stages->count, sizeof *experiment->stages);
   bool fine = experiment->stages;
   int number = 0;
   for (const strut_tree *item = stages->first; item && experiment->stages; item = item->next) {

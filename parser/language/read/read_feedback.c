@@ -75,12 +75,11 @@ static bool read_of(strut_reader *reader, const strut_tree *value, strut_owner o
   return sensor->of && !why;
 }
 
-bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                       void *object) {
+bool strut_read_sensor(strut_reader *reader, strut_fields *fields, void *object) {
   strut_sensor *sensor = object;
   const strut_slot *along = strut_slot_of(fields, STRUT_KEY_SENSOR_ALONG);
   const strut_tree *of = strut_given(fields, STRUT_KEY_SENSOR_OF);
-  if (fields->broken || (of && !read_of(reader, of, owner, sensor))) return false;
+  if (fields->broken || (of && !read_of(reader, of, fields->owner, sensor))) return false;
   strut_column_kind kind = strut_sensor_column(sensor).kind;
   bool directed = kind >= STRUT_COLUMN_NODE_X && kind <= STRUT_COLUMN_NODE_VY;
   if (kind == STRUT_COLUMN_TIME)
@@ -231,7 +230,7 @@ static bool read_start(strut_reader *reader, const strut_tree *key, strut_quanti
   strut_owner owner = {"state", key->text};
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_STATE, key->next, owner, &fields);
-  strut_require(reader, &fields, owner, key->place);
+  strut_require(reader, &fields, key->place);
   return !fields.broken &&
          strut_read_any_quantity(reader, strut_given(&fields, STRUT_KEY_STATE_START), "start",
                                  owner, "a number such as '0 rad'", start);
@@ -242,8 +241,8 @@ static bool read_phase(strut_reader *reader, const strut_tree *key, strut_quanti
   strut_fields fields;
   strut_oscillator o = {.phase = 0.0};
   strut_read_fields_of(reader, STRUT_SECTION_OSCILLATOR, key, owner, &fields);
-  strut_require(reader, &fields, owner, key->place);
-  bool fine = !fields.broken && strut_store(reader, &fields, owner, &o);
+  strut_require(reader, &fields, key->place);
+  bool fine = !fields.broken && strut_store(reader, &fields, &o);
   *start = (strut_quantity){.value = o.phase, .dimension = STRUT_DIM_ANGLE};
   return fine;
 }
@@ -266,8 +265,7 @@ void strut_list_states(strut_reader *reader) {
                 strut_entry_count(reader, STRUT_KEY_SCENE_OSCILLATORS) +
                 strut_entry_count(reader, STRUT_KEY_SCENE_CONTROLLERS) +
                 strut_entry_count(reader, STRUT_KEY_SCENE_PIPES) + 1;
-  reader->state_dimension =
-      strut_reader_allocate(reader, &reader->scratch, most, sizeof *reader->state_dimension);
+  reader->state_dimension = strut_scratch_array(reader, most, sizeof *reader->state_dimension);
   if (!strut_reserve_things(reader, STRUT_THING_STATE, most) || !reader->state_dimension) return;
   list_states(reader, STRUT_KEY_SCENE_STATES, false);
   list_states(reader, STRUT_KEY_SCENE_OSCILLATORS, true);
@@ -499,14 +497,13 @@ int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   network n = {.reader = reader, .key = key, .keys = {.output = 1}, .passes = 1.0, .line = 1};
   strut_safe_text text = {0};
   strut_read_fields(reader, STRUT_SECTION_NETWORK, key->next, owner, &fields);
-  strut_require(reader, &fields, owner, key->place);
+  strut_require(reader, &fields, key->place);
   const strut_tree *file = strut_given(&fields, STRUT_KEY_NETWORK_FILE);
   if (fields.broken || !file) return -1;
-  strut_store(reader, &fields, owner, &n.keys);
+  strut_store(reader, &fields, &n.keys);
   if (!read_inputs(&n, owner) || !strut_read_file_of(reader, file, LARGEST_FILE, &text)) return -1;
   n.passes = (double)n.before;
-  n.weight = strut_reader_allocate(reader, &reader->scratch, n.before + MOST_NEURONS + 1,
-                                   sizeof *n.weight);
+  n.weight = strut_scratch_array(reader, n.before + MOST_NEURONS + 1, sizeof *n.weight);
   bool fine = n.weight && is_text(&n, &text) && read_layers(&n, text.text);
   strut_safe_text_free(&text);
   return fine ? add_output(&n, owner) : -1;

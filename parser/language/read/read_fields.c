@@ -265,11 +265,11 @@ static const strut_tree *rival(const strut_fields *fields, int key) {
   return NULL;
 }
 
-static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const strut_tree *key_tree,
-                             strut_owner owner) {
+static void read_pair_of_map(strut_reader *reader, strut_fields *fields,
+                             const strut_tree *key_tree) {
   int key = strut_key_named(reader, fields->section, key_tree);
   if (key < 0) {
-    int meant = strut_unknown_key(reader, key_tree, &fields->section, 1, owner);
+    int meant = strut_unknown_key(reader, key_tree, &fields->section, 1, fields->owner);
     fields->broken = true;
     if (meant >= 0 && strut_slot_of(fields, meant)->state == STRUT_ABSENT)
       strut_slot_of(fields, meant)->state = STRUT_BROKEN;
@@ -277,17 +277,17 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const s
   }
   strut_slot *slot = strut_slot_of(fields, key);
   const strut_tree *other = slot->key ? slot->key : rival(fields, key); /* or by its former name */
-  strut_read_slot(reader, key, key_tree, key_tree->next, owner, slot);
+  strut_read_slot(reader, key, key_tree, key_tree->next, fields->owner, slot);
   if (other) {
     strut_report_error(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",
-                       strut_owner_text(reader, owner), other->text, key_tree->text);
+                       strut_owner_text(reader, fields->owner), other->text, key_tree->text);
     slot->state = STRUT_BROKEN;
   }
   if (slot->state == STRUT_BROKEN) fields->broken = true;
 }
 
 /* `mu` sets both coefficients, so that neither may be given beside it. */
-static void check_coefficients(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+static void check_coefficients(strut_reader *reader, strut_fields *fields) {
   const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
   const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
@@ -297,7 +297,7 @@ static void check_coefficients(strut_reader *reader, strut_fields *fields, strut
   if (!mu->key) mu = forward;
   if (!mu->key || !rival->key || rival == mu) return;
   strut_report_error(reader, mu->key->place, "%s gives both '%s' and '%s', expected %s",
-                     strut_owner_text(reader, owner), mu->key->text, rival->key->text,
+                     strut_owner_text(reader, fields->owner), mu->key->text, rival->key->text,
                      directions ? "'mu', or 'mu_forward' and 'mu_backward'"
                                 : "'mu', or 'mu_static' and 'mu_kinetic'");
   fields->broken = true;
@@ -305,7 +305,7 @@ static void check_coefficients(strut_reader *reader, strut_fields *fields, strut
 
 void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
                        strut_owner owner, strut_fields *fields) {
-  *fields = (strut_fields){.section = section, .map = map};
+  *fields = (strut_fields){.section = section, .owner = owner, .map = map};
   if (map->kind != STRUT_TREE_MAP) {
     const bool file = section == STRUT_SECTION_DATA && map->kind == STRUT_TREE_SCALAR;
     strut_report_error(reader, map->place,
@@ -319,8 +319,8 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
     return;
   }
   for (const strut_tree *tree = map->first; tree; tree = tree->next->next)
-    read_pair_of_map(reader, fields, tree, owner);
-  if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields, owner);
+    read_pair_of_map(reader, fields, tree);
+  if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields);
 }
 
 void strut_read_fields_of(strut_reader *reader, strut_section section, const strut_tree *key,
@@ -329,8 +329,7 @@ void strut_read_fields_of(strut_reader *reader, strut_section section, const str
   fields->key = key;
 }
 
-void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                   strut_place place) {
+void strut_require(strut_reader *reader, strut_fields *fields, strut_place place) {
   int first = strut_section_first(fields->section), size = strut_section_size(fields->section);
   const strut_key *keys = strut_key_at(first);
   for (int i = 0; i < size; i++) {
@@ -339,7 +338,7 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
     if (slot->state != STRUT_ABSENT || keys[i].need != STRUT_REQUIRED) continue;
     if (!reader->holes)
       strut_report_error(reader, place, "%s lacks '%s', expected %s",
-                         strut_owner_text(reader, owner), strut_key_at(first + i)->name,
+                         strut_owner_text(reader, fields->owner), strut_key_at(first + i)->name,
                          strut_key_expected(first + i, expected, sizeof expected));
     slot->state = STRUT_BROKEN;
     fields->broken = true;
@@ -455,7 +454,7 @@ static bool is_met(strut_fields *fields, const companion *self, const strut_slot
          strut_word_find(self->words, word) >= 0;
 }
 
-bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+bool strut_check_companions(strut_reader *reader, strut_fields *fields) {
   bool fine = true;
   for (const companion *c = companions; c < companions + COMPANIONS; c++) {
     const strut_slot *other = NULL;
@@ -468,7 +467,7 @@ bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_ow
       continue;
     }
     strut_report_error(reader, slot->key->place, "'%s' of %s has no meaning without %s%s%s",
-                       slot->key->text, strut_owner_text(reader, owner),
+                       slot->key->text, strut_owner_text(reader, fields->owner),
                        c->other < 0 ? "" : strut_key_at(c->other)->name, c->other < 0 ? "" : ": ",
                        strut_words_text(c->words, words, sizeof words));
     slot->state = STRUT_BROKEN;

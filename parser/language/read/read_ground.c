@@ -32,8 +32,8 @@ static bool is_given(strut_fields *fields, int key, double *number) {
 enum { UNREAD, PLAIN, DRIVEN };
 
 /* `mu` of a layer, a number or a signal, read once although a group's holds for many contacts. */
-static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                    strut_friction *friction, double *mu) {
+static bool read_mu(strut_reader *reader, strut_fields *fields, strut_friction *friction,
+                    double *mu) {
   strut_slot *slot = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   if (slot->state != STRUT_GIVEN) return false;
   bool signal = slot->value->kind == STRUT_TREE_MAP ||
@@ -41,10 +41,10 @@ static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owne
                  strut_name_map_find(&reader->signal_names, slot->value->text) >= 0);
   if (slot->number[1] == UNREAD && signal) {
     const strut_dimension plain = STRUT_DIM_NONE;
-    int32_t index = strut_read_signal(reader, slot->value, "mu", owner, &plain);
+    int32_t index = strut_read_signal(reader, slot->value, "mu", fields->owner, &plain);
     slot->number[1] = index < 0 ? UNREAD : DRIVEN + index;
   } else if (slot->number[1] == UNREAD) {
-    bool fine = strut_read_number(reader, slot->value, "mu", owner, STRUT_DIM_NONE,
+    bool fine = strut_read_number(reader, slot->value, "mu", fields->owner, STRUT_DIM_NONE,
                                   STRUT_WITHIN(NOT_NEGATIVE), &slot->number[0]);
     slot->number[1] = fine ? PLAIN : UNREAD;
   }
@@ -72,14 +72,13 @@ static void stop_driving(friction_layers *self, strut_fields *fields) {
  * Coefficients of a layer beside mu_static and mu_kinetic. Those without a direction replace both
  * directions of the layers below.
  */
-static void set_coefficients(strut_reader *reader, friction_layers *self, strut_fields *fields,
-                             strut_owner owner) {
+static void set_coefficients(strut_reader *reader, friction_layers *self, strut_fields *fields) {
   strut_friction *all = &self->friction;
   const unsigned directions =
       key_bit(STRUT_KEY_FRICTION_MU_FORWARD) | key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
       key_bit(STRUT_KEY_FRICTION_MU_BACKWARD) | key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
   double mu;
-  bool both = read_mu(reader, fields, owner, all, &mu);
+  bool both = read_mu(reader, fields, all, &mu);
   if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
       is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic)) {
     all->directional = false, self->given &= ~directions;
@@ -102,16 +101,15 @@ static void set_coefficients(strut_reader *reader, friction_layers *self, strut_
   is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC, &all->mu_static_backward);
 }
 
-static void add_layer(strut_reader *reader, friction_layers *self, strut_fields *fields,
-                      strut_owner owner) {
+static void add_layer(strut_reader *reader, friction_layers *self, strut_fields *fields) {
   self->any = true;
   self->last = fields->map;
-  self->owner = owner;
+  self->owner = fields->owner;
   if (fields->broken) self->broken = true;
-  strut_store(reader, fields, owner, &self->friction);
+  strut_store(reader, fields, &self->friction);
   for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
     if (fields->slot[i].state == STRUT_GIVEN) self->given |= 1u << i;
-  set_coefficients(reader, self, fields, owner);
+  set_coefficients(reader, self, fields);
   self->broken = self->broken || fields->broken;
 }
 
@@ -184,22 +182,19 @@ typedef struct ground_defaults {
 } ground_defaults;
 
 /* Lays the friction of the contact's groups, then its own, over the ground's. */
-static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                         friction_layers *layers) {
+static void own_friction(strut_reader *reader, strut_fields *fields, friction_layers *layers) {
   const strut_slot *group = strut_slot_of(fields, STRUT_KEY_CONTACT_GROUP);
   const strut_slot *own = strut_slot_of(fields, STRUT_KEY_CONTACT_FRICTION);
   strut_group *groups[STRUT_MOST_GROUPS];
   size_t count = group->state == STRUT_GIVEN ? strut_groups_named(reader, group->value, groups) : 0;
   for (size_t g = 0; g < count; g++)
     for (size_t i = 0; i < groups[g]->count; i++)
-      if (groups[g]->items[i].nested)
-        add_layer(reader, layers, groups[g]->items[i].nested,
-                  (strut_owner){"the friction of group", groups[g]->name});
+      if (groups[g]->items[i].nested) add_layer(reader, layers, groups[g]->items[i].nested);
   if (own->state != STRUT_GIVEN || own->from) return;
   strut_fields nested;
-  strut_owner mine = {"the friction of contact", owner.name};
+  strut_owner mine = {"the friction of contact", fields->owner.name};
   strut_read_fields(reader, STRUT_SECTION_FRICTION, own->value, mine, &nested);
-  add_layer(reader, layers, &nested, mine);
+  add_layer(reader, layers, &nested);
 }
 
 /* Forward is where the part's own x points, along the ground. */
@@ -232,9 +227,9 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
     strut_fields fields;
     strut_enter_scope(reader, key);
     strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
-    strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
-    strut_store(reader, &fields, owner, contact);
-    own_friction(reader, &fields, owner, &layers);
+    strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP);
+    strut_store(reader, &fields, contact);
+    own_friction(reader, &fields, &layers);
     fine = turn_friction(reader, key, defaults->along, &layers.friction) && fine && !fields.broken;
   }
   if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
@@ -259,8 +254,7 @@ static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_own
   return any;
 }
 
-static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                       unsigned char *touches) {
+static bool mark_nodes(strut_reader *reader, strut_fields *fields, unsigned char *touches) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
   size_t count = reader->scene->node_count;
   if (slot->state != STRUT_GIVEN || slot->value->kind == STRUT_TREE_SCALAR) {
@@ -270,15 +264,15 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
   bool fine = true;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     if (strut_is_pattern(item)) {
-      fine = mark_matches(reader, item, owner, touches) && fine;
+      fine = mark_matches(reader, item, fields->owner, touches) && fine;
       continue;
     }
-    int32_t node = strut_read_reference(reader, item, "nodes", owner, STRUT_THING_NODE);
+    int32_t node = strut_read_reference(reader, item, "nodes", fields->owner, STRUT_THING_NODE);
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
       fine = strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of %s",
-                                item->text, strut_owner_text(reader, owner));
+                                item->text, strut_owner_text(reader, fields->owner));
     } else {
       touches[node] = 1;
     }
@@ -287,8 +281,8 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
 }
 
 /* The entry in `contacts` of each node that has one. */
-static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                         const unsigned char *touches, bool complete, const strut_tree **entry) {
+static bool find_entries(strut_reader *reader, strut_fields *fields, const unsigned char *touches,
+                         bool complete, const strut_tree **entry) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_CONTACTS);
   bool fine = slot->state != STRUT_BROKEN;
   if (slot->state != STRUT_GIVEN) return fine;
@@ -298,7 +292,7 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
         if (touches[node]) entry[node] = key;
       continue;
     }
-    int32_t node = strut_read_reference(reader, key, "contacts", owner, STRUT_THING_NODE);
+    int32_t node = strut_read_reference(reader, key, "contacts", fields->owner, STRUT_THING_NODE);
     if (node >= 0 && touches[node]) {
       entry[node] = key;
       continue;
@@ -307,10 +301,10 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
     if (node >= 0 && moves(reader, node))
       strut_report_error(reader, key->place,
                          "node '%s' has a contact with %s, but it moves, so that it cannot touch",
-                         key->text, strut_owner_text(reader, owner));
+                         key->text, strut_owner_text(reader, fields->owner));
     else if (node >= 0 && complete)
       strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of %s lacks it",
-                         key->text, strut_owner_text(reader, owner));
+                         key->text, strut_owner_text(reader, fields->owner));
   }
   return fine;
 }
@@ -347,39 +341,36 @@ typedef struct contact_list {
 } contact_list;
 
 /* Memory for the contacts of `nodes` nodes with all pieces. False: there are too many, which was reported. */
-static bool make_contacts(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                          size_t nodes, size_t pieces, contact_list *list) {
+static bool make_contacts(strut_reader *reader, strut_fields *fields, size_t nodes, size_t pieces,
+                          contact_list *list) {
   const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
   double count = (double)nodes * (double)pieces;
   if (pieces > 1 && count > reader->limit_things) {
     strut_report_error(reader, profile->value->place,
                        "%zu nodes with the %zu parts of the profile of %s make %.3g contacts, at "
                        "most %.0f are possible%s",
-                       nodes, pieces, strut_owner_text(reader, owner), count, reader->limit_things,
-                       strut_limit_hint(reader));
+                       nodes, pieces, strut_owner_text(reader, fields->owner), count,
+                       reader->limit_things, strut_limit_hint(reader));
     fields->broken = true;
     return false;
   }
-  list->contact =
-      strut_reader_allocate(reader, &reader->scene->arena, nodes * pieces, sizeof *list->contact);
-  list->source =
-      strut_reader_allocate(reader, &reader->scratch, nodes * pieces, sizeof *list->source);
+  list->contact = strut_keep_array(reader, nodes * pieces, sizeof *list->contact);
+  list->source = strut_scratch_array(reader, nodes * pieces, sizeof *list->source);
   return list->contact && list->source;
 }
 
 /* The contacts of a ground with its nodes; of each node one for each convex piece. */
-static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                          ground_defaults *defaults, size_t pieces, contact_list *list) {
+static void read_contacts(strut_reader *reader, strut_fields *fields, ground_defaults *defaults,
+                          size_t pieces, contact_list *list) {
   size_t count = reader->scene->node_count, touching = 0;
-  unsigned char *touches = strut_reader_allocate(reader, &reader->scratch, count, 1);
-  const strut_tree **entry = strut_reader_allocate(reader, &reader->scratch, count, sizeof *entry);
+  unsigned char *touches = strut_scratch_array(reader, count, 1);
+  const strut_tree **entry = strut_scratch_array(reader, count, sizeof *entry);
   if (!touches || !entry) return;
-  bool complete = mark_nodes(reader, fields, owner, touches);
+  bool complete = mark_nodes(reader, fields, touches);
   complete = add_copied(reader, touches, entry) && complete;
-  if (!find_entries(reader, fields, owner, touches, complete, entry) || !complete)
-    fields->broken = true;
+  if (!find_entries(reader, fields, touches, complete, entry) || !complete) fields->broken = true;
   for (size_t i = 0; i < count; i++) touching += touches[i];
-  if (!make_contacts(reader, fields, owner, touching, pieces, list)) return;
+  if (!make_contacts(reader, fields, touching, pieces, list)) return;
   for (size_t i = 0; i < count; i++) {
     if (!touches[i]) continue;
     size_t c = list->count++;
@@ -396,23 +387,23 @@ static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owne
 }
 
 static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
-                                     const strut_contact *contact, strut_owner owner) {
+                                     const strut_contact *contact) {
   ground_defaults defaults = {.contact = *contact, .broken = fields->broken};
   const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
   if (friction->state != STRUT_GIVEN) return defaults;
   strut_fields nested;
   char text[200];
-  snprintf(text, sizeof text, "the friction of %.150s", strut_owner_text(reader, owner));
+  snprintf(text, sizeof text, "the friction of %.150s", strut_owner_text(reader, fields->owner));
   strut_owner mine = {strut_keep_text(reader, text), NULL};
   strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
-  add_layer(reader, &defaults.friction, &nested, mine);
+  add_layer(reader, &defaults.friction, &nested);
   return defaults;
 }
 
 /* ---- shape and motion ---- */
 
 /* Keys of a line beside those of another shape. */
-static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+static bool shape_is_alone(strut_reader *reader, strut_fields *fields) {
   static const int of_lines[] = {STRUT_KEY_GROUND_HEIGHT, STRUT_KEY_GROUND_SLOPE,
                                  STRUT_KEY_GROUND_THROUGH, STRUT_KEY_GROUND_NORMAL};
   const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
@@ -421,21 +412,21 @@ static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_own
     const strut_slot *slot = strut_slot_of(fields, of_lines[i]);
     if (!slot->key) continue;
     return strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
-                              strut_owner_text(reader, owner), shape->key->text, slot->key->text);
+                              strut_owner_text(reader, fields->owner), shape->key->text,
+                              slot->key->text);
   }
   return true;
 }
 
 /* The slope of a line by its normal vector. */
-static bool read_normal(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                        strut_ground_section *section) {
+static bool read_normal(strut_reader *reader, strut_fields *fields, strut_ground_section *section) {
   strut_ground *ground = &section->ground;
   const strut_slot *normal = strut_slot_of(fields, STRUT_KEY_GROUND_NORMAL);
   if (normal->state != STRUT_GIVEN) return true;
   const double *n = section->normal;
   if (n[0] == 0.0 && n[1] == 0.0)
     return strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
-                              strut_owner_text(reader, owner));
+                              strut_owner_text(reader, fields->owner));
   ground->slope = n[0] == 0.0 ? (n[1] > 0.0 ? 0.0 : STRUT_PI) : atan2(-n[0], n[1]);
   if (!ground->placed && n[1] < 0.0) { /* steeper than a ground without a point may be */
     ground->placed = true;
@@ -468,18 +459,17 @@ static size_t pieces_of(const strut_ground *ground) {
 /* Names of contacts where a node may have several: NODE, NODE.GROUND, NODE.PIECE or NODE.GROUND.PIECE. */
 static void name_contacts(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  size_t surfaces = 0, *pieces = strut_reader_allocate(reader, &reader->scratch,
-                                                       scene->ground_count, sizeof *pieces);
+  size_t surfaces = 0, *pieces = strut_scratch_array(reader, scene->ground_count, sizeof *pieces);
   for (size_t g = 0; g < scene->ground_count && pieces; g++)
     surfaces += pieces[g] = pieces_of(&scene->grounds[g]);
   for (size_t i = 0; surfaces > 1 && i < scene->contact_count; i++) {
     strut_contact *contact = &scene->contacts[i];
     const char *node = scene->nodes[contact->node].name,
                *ground = scene->grounds[contact->ground].name, *dot = *ground ? "." : "";
-    contact->name = pieces[contact->ground] > 1
-                        ? strut_formatted(reader, &scene->arena, "%s%s%s.%d", node, dot, ground,
-                                          (int)contact->piece + 1)
-                        : strut_formatted(reader, &scene->arena, "%s%s%s", node, dot, ground);
+    contact->name =
+        pieces[contact->ground] > 1
+            ? strut_kept_text(reader, "%s%s%s.%d", node, dot, ground, (int)contact->piece + 1)
+            : strut_kept_text(reader, "%s%s%s", node, dot, ground);
   }
 }
 
@@ -487,7 +477,7 @@ static void name_contacts(strut_reader *reader) {
 static void merge_contacts(strut_reader *reader, const contact_list *lists) {
   strut_scene *scene = reader->scene;
   size_t grounds = scene->ground_count, total = 0;
-  size_t *next = strut_reader_allocate(reader, &reader->scratch, grounds, sizeof *next);
+  size_t *next = strut_scratch_array(reader, grounds, sizeof *next);
   for (size_t g = 0; g < grounds; g++) total += lists[g].count;
   if (!next || !strut_reserve_things(reader, STRUT_THING_CONTACT, total)) return;
   for (int32_t node = 0; (size_t)node < scene->node_count; node++)
@@ -511,20 +501,20 @@ static void check_belt(strut_reader *reader, const strut_slot *belt, const conta
                        "'belt_speed' has no meaning without 'friction' of a contact");
 }
 
-static void read_one(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                     strut_place place, strut_ground *ground, contact_list *list) {
-  strut_require(reader, fields, owner, place);
+static void read_one(strut_reader *reader, strut_fields *fields, strut_place place,
+                     strut_ground *ground, contact_list *list) {
+  strut_require(reader, fields, place);
   strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
-  if (!strut_store(reader, fields, owner, &section) || !shape_is_alone(reader, fields, owner) ||
-      !read_normal(reader, fields, owner, &section))
+  if (!strut_store(reader, fields, &section) || !shape_is_alone(reader, fields) ||
+      !read_normal(reader, fields, &section))
     fields->broken = true;
   *ground = section.ground;
-  ground_defaults defaults = read_defaults(reader, fields, &section.contact, owner);
+  ground_defaults defaults = read_defaults(reader, fields, &section.contact);
   bool line = ground->shape == STRUT_GROUND_LINE;
   defaults.along[0] = line ? cos(ground->slope) : 1.0;
   defaults.along[1] = line ? sin(ground->slope) : 0.0;
   if (strut_entries(reader, STRUT_KEY_SCENE_NODES))
-    read_contacts(reader, fields, owner, &defaults, pieces_of(ground), list);
+    read_contacts(reader, fields, &defaults, pieces_of(ground), list);
   else
     fields->broken = true;
   check_belt(reader, strut_slot_of(fields, STRUT_KEY_GROUND_BELT_SPEED), list);
@@ -538,15 +528,15 @@ static void read_single(strut_reader *reader) {
   contact_list list = {0};
   if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_SECTION_GROUND, owner.kind, fields))
     return;
-  read_one(reader, fields, owner, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place,
-           &ground, &list);
+  read_one(reader, fields, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place, &ground,
+           &list);
   if (is_plain(&ground, &list)) {
     scene->ground = ground;
     scene->contacts = list.contact, scene->contact_count = list.count;
     reader->things[STRUT_THING_CONTACT].source = list.source;
     return;
   }
-  scene->grounds = strut_reader_allocate(reader, &scene->arena, 1, sizeof *scene->grounds);
+  scene->grounds = strut_keep_array(reader, 1, sizeof *scene->grounds);
   if (!scene->grounds) return;
   ground.present = false;
   scene->grounds[scene->ground_count++] = ground;
@@ -572,9 +562,8 @@ void strut_read_ground(strut_reader *reader) {
   note_contacts_without_ground(reader);
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUNDS);
   if (!map || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key) return;
-  contact_list *lists = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *lists);
-  reader->grounds =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->grounds);
+  contact_list *lists = strut_scratch_array(reader, map->count, sizeof *lists);
+  reader->grounds = strut_scratch_array(reader, map->count, sizeof *reader->grounds);
   if (!lists || !reader->grounds || !strut_reserve_things(reader, STRUT_THING_GROUND, map->count))
     return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
@@ -584,7 +573,7 @@ void strut_read_ground(strut_reader *reader) {
     lists[g] = (contact_list){0};
     bool fine = strut_read_name(reader, key, "ground");
     strut_read_fields(reader, STRUT_SECTION_GROUND, key->next, owner, &reader->grounds[g]);
-    read_one(reader, &reader->grounds[g], owner, key->place, &scene->grounds[g], &lists[g]);
+    read_one(reader, &reader->grounds[g], key->place, &scene->grounds[g], &lists[g]);
     if (!fine) reader->grounds[g].broken = true;
     if (reader->grounds[g].broken)
       reader->ground.broken = true; /* so that what depends on it is not reported */

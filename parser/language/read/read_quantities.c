@@ -223,8 +223,8 @@ static int find_anywhere(void *context, const char *kind, strut_piece owner, str
     snprintf(text, sizeof text, " or hinge(%.40s)", name);
     snprintf(
         refusal->text, sizeof refusal->text, "%s",
-        strut_formatted(
-            reader, &reader->scratch,
+        strut_scratch_text(
+            reader,
             "'%.40s.%.40s' means two things, since a node%s is called '%.40s'; rename it, or write "
             "node(%.40s)%smember(%.40s)%s for it",
             name, strut_piece_text(reader, field),
@@ -277,8 +277,7 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
 }
 
 static strut_instruction *keep_program(strut_reader *reader, const strut_compiler *compiler) {
-  strut_instruction *program =
-      strut_reader_allocate(reader, &reader->scene->arena, compiler->length, sizeof *program);
+  strut_instruction *program = strut_keep_array(reader, compiler->length, sizeof *program);
   for (size_t i = 0; i < compiler->length && program; i++) {
     const strut_compiled *from = &compiler->program[i];
     program[i] = from->instruction;
@@ -292,8 +291,8 @@ strut_instruction *strut_compile(strut_reader *reader, const strut_tree *value, 
                                  strut_owner owner, strut_compiler *compiler,
                                  strut_quantity *quantity) {
   compiler->context = reader;
-  compiler->program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
-                                            sizeof *compiler->program);
+  compiler->program =
+      strut_scratch_array(reader, strlen(value->text) + 1, sizeof *compiler->program);
   if (!compiler->program) return NULL;
   if (strut_read_program(reader, value, key, owner, compiler, quantity))
     return keep_program(reader, compiler);
@@ -361,16 +360,16 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
 }
 
 /* The value that an arrival waits for, of the expression's dimension; NULL: that is not known. */
-static void read_target(strut_reader *reader, strut_fields *fields, strut_owner owner,
+static void read_target(strut_reader *reader, strut_fields *fields,
                         const strut_dimension *dimension, strut_quantity_definition *definition) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_QUANTITY_TARGET);
   bool wanted = definition->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
   if (slot->state == STRUT_BROKEN) return;
   if (!given && wanted)
     strut_report_error(reader, fields->key->place, "%s lacks 'target', the value that it waits for",
-                       strut_owner_text(reader, owner));
+                       strut_owner_text(reader, fields->owner));
   if (!given || !wanted || !dimension) return;
-  strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_WITHIN(ANY),
+  strut_read_number(reader, slot->value, "target", fields->owner, *dimension, STRUT_WITHIN(ANY),
                     &definition->target);
   definition->target_unit = strut_keep_unit(reader, *dimension, "1");
 }
@@ -405,7 +404,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   if (strut_ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, "of", owner)) return;
   if (map) {
     strut_read_fields_of(reader, STRUT_SECTION_QUANTITY, key, owner, &fields);
-    strut_require(reader, &fields, owner, key->place);
+    strut_require(reader, &fields, key->place);
     of = strut_given(&fields, STRUT_KEY_QUANTITY_OF);
   } else if (!strut_read_scalar(reader, of, key->text, (strut_owner){"the quantities", NULL},
                                 "an expression such as com.vy, or a mapping such as {of: com.vy, "
@@ -413,8 +412,8 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
     return;
   }
   bool known = of && read_expression(reader, of, owner, definition, &dimension);
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, definition, sizeof *definition);
-  if (of && map) read_target(reader, &fields, owner, known ? &dimension : NULL, definition);
+  strut_store(reader, &fields, definition);
+  if (of && map) read_target(reader, &fields, known ? &dimension : NULL, definition);
   if (definition->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
   if (definition->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
   definition->unit = is_moment(definition) ? "N m" : strut_keep_unit(reader, dimension, "1");
@@ -436,8 +435,7 @@ void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
   strut_experiment *experiment = reader->experiment;
   if (slot->state != STRUT_GIVEN) return;
   const strut_tree *map = slot->value;
-  experiment->quantities = strut_reader_allocate(reader, &reader->scene->arena, map->count,
-                                                 sizeof *experiment->quantities);
+  experiment->quantities = strut_keep_array(reader, map->count, sizeof *experiment->quantities);
   if (!experiment->quantities) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     strut_quantity_definition *definition = &experiment->quantities[experiment->quantity_count++];
@@ -483,7 +481,7 @@ size_t strut_read_derivatives(strut_reader *reader, const strut_slot *slot, stru
                               const strut_scene_source *source, strut_derived_by **list) {
   size_t count = 0;
   if (slot->state != STRUT_GIVEN) return 0;
-  *list = strut_reader_allocate(reader, reader->keep, slot->value->count, sizeof **list);
+  *list = strut_keep_array(reader, slot->value->count, sizeof **list);
   for (const strut_tree *item = slot->value->first; item && *list; item = item->next) {
     strut_declared declared = {0};
     if (!check_derivative(reader, slot->value, item, owner, source, &declared)) continue;

@@ -44,7 +44,7 @@ static void read_head(strut_reader *reader) {
                                 strut_measure_dimension(strut_key_at(key)->measure), slot->number);
     if (!fine) slot->state = STRUT_BROKEN;
   }
-  strut_store(reader, &reader->top, owner, reader->scene);
+  strut_store(reader, &reader->top, reader->scene);
 }
 
 /* Stops behind the section in which the diagnostics became full. */
@@ -156,7 +156,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   }
   strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
-  strut_require(reader, &reader->top, owner, strut_root_place(reader));
+  strut_require(reader, &reader->top, strut_root_place(reader));
   bool any = reader->purpose == STRUT_FOR_ANY || reader->purpose == STRUT_FOR_ANY_STATICS;
   if (any && !describes_run(reader)) reader->purpose = STRUT_FOR_STATICS;
   if (reader->purpose == STRUT_FOR_ANY) reader->purpose = STRUT_FOR_RUN;

@@ -53,7 +53,7 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
                       strut_owner owner, meaning *self, strut_signal *signal) {
   strut_fields fields;
   strut_read_fields(reader, section, map, owner, &fields);
-  strut_require(reader, &fields, owner, map->place);
+  strut_require(reader, &fields, map->place);
   bool fine = !fields.broken;
   for (int i = 0; i < strut_section_size(section); i++) {
     const strut_slot *slot = &fields.slot[i];
@@ -61,14 +61,14 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
     if (slot->state == STRUT_GIVEN && key->measure == STRUT_MEASURE_CONTEXT)
       fine = read_value(reader, slot->value, key->name, owner, self, &signal->amplitude) && fine;
   }
-  strut_store(reader, &fields, owner, signal);
+  strut_store(reader, &fields, signal);
   return fine;
 }
 
 static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner owner,
                        meaning *self, strut_signal *signal) {
-  double *time = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *time);
-  double *value = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *value);
+  double *time = strut_keep_array(reader, list->count, sizeof *time);
+  double *value = strut_keep_array(reader, list->count, sizeof *value);
   bool fine = true;
   if (!time || !value) return false;
   for (const strut_tree *point = list->first; point; point = point->next) {
@@ -94,7 +94,7 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
 
 static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *self,
                      strut_signal *signal) {
-  int32_t *terms = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *terms);
+  int32_t *terms = strut_keep_array(reader, list->count, sizeof *terms);
   bool fine = terms != NULL;
   for (const strut_tree *item = terms ? list->first : NULL; item; item = item->next) {
     const strut_dimension *expected = self->expected ? self->expected
@@ -138,19 +138,18 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   return strut_refuse_dimension(reader, value, "expression", owner, wanted, q.dimension);
 }
 
-static bool read_data(strut_reader *reader, strut_fields *fields, strut_owner owner, meaning *self,
+static bool read_data(strut_reader *reader, strut_fields *fields, meaning *self,
                       strut_signal *signal) {
   const strut_slot *data = strut_slot_of(fields, STRUT_KEY_SIGNAL_DATA);
   const strut_slot *over = strut_slot_of(fields, STRUT_KEY_SIGNAL_OVER);
   self->bare = false;
   return strut_read_data_signal(reader, data->value,
-                                over->state == STRUT_GIVEN ? over->value : NULL, owner,
+                                over->state == STRUT_GIVEN ? over->value : NULL, fields->owner,
                                 self->expected, &self->dimension, signal) &&
          check_unscaled(reader, data->value, "data");
 }
 
-bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                        void *object) {
+bool strut_read_trigger(strut_reader *reader, strut_fields *fields, void *object) {
   strut_trigger *trigger = object;
   int key =
       strut_given(fields, STRUT_KEY_STARTS_ABOVE) ? STRUT_KEY_STARTS_ABOVE : STRUT_KEY_STARTS_BELOW;
@@ -159,15 +158,16 @@ bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner 
   if (!sensed && !strut_given(fields, STRUT_KEY_STARTS_CONTACT))
     return strut_report_error(
         reader, fields->map->place,
-        "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}", owner.kind);
+        "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}",
+        fields->owner.kind);
   if (sensed != level)
     return strut_report_error(reader, fields->map->place,
                               sensed ? "%s needs a level, 'above' or 'below', of its sensor"
                                      : "%s gives a level, which only a sensor passes",
-                              owner.kind);
+                              fields->owner.kind);
   if (!sensed || trigger->item < 0) return trigger->item >= 0;
   strut_dimension dimension = strut_sensor_dimension(&reader->scene->sensors[trigger->item]);
-  return strut_store_number(reader, fields, key, owner, dimension, trigger);
+  return strut_store_number(reader, fields, key, dimension, trigger);
 }
 
 /* A signal written out: a mapping with one key. */
@@ -188,7 +188,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   if (kinds != 1 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
-  bool fine = strut_store(reader, &fields, owner, &signal);
+  bool fine = strut_store(reader, &fields, &signal);
   if (signal.kind == STRUT_CONSTANT)
     fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude) && fine;
   else if (signal.kind == STRUT_TABLE)
@@ -196,7 +196,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   else if (signal.kind == STRUT_EXPRESSION)
     fine = read_expression(reader, value, owner, &m, &signal) && fine;
   else if (signal.kind == STRUT_DATA)
-    fine = read_data(reader, &fields, owner, &m, &signal) && fine;
+    fine = read_data(reader, &fields, &m, &signal) && fine;
   else if (signal.kind == STRUT_SUM)
     fine = read_sum(reader, value, owner, &m, &signal) && fine;
   else
@@ -235,7 +235,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
                                     : read_signal(reader, value, named->name, owner, NULL);
   if (index >= 0 && !named->controller && value->kind == STRUT_TREE_SCALAR) {
     /* Another name for a signal: a sum of one term. */
-    int32_t *term = strut_reader_allocate(reader, &reader->scene->arena, 1, sizeof *term);
+    int32_t *term = strut_keep_array(reader, 1, sizeof *term);
     strut_signal sum = strut_signal_default(STRUT_SUM);
     meaning m = {NULL, reader->signal_state[index].dimension, reader->signal_state[index].bare};
     if (term) *term = index;
@@ -328,7 +328,7 @@ void strut_list_signals(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
   size_t count = (map ? map->count : 0) + strut_entry_count(reader, STRUT_KEY_SCENE_CONTROLLERS);
   if (!count) return;
-  reader->named = strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->named);
+  reader->named = strut_scratch_array(reader, count, sizeof *reader->named);
   for (const strut_tree *key = map && reader->named ? map->first : NULL; key; key = key->next->next)
     strut_list_signal(reader, key, false);
 }
@@ -358,8 +358,7 @@ void strut_read_signals(strut_reader *reader) {
 
 void strut_keep_signals(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  scene->signals =
-      strut_reader_allocate(reader, &scene->arena, reader->signal_count, sizeof *scene->signals);
+  scene->signals = strut_keep_array(reader, reader->signal_count, sizeof *scene->signals);
   if (!scene->signals) return;
   if (reader->signal_count)
     memcpy(scene->signals, reader->signals, reader->signal_count * sizeof *scene->signals);
@@ -371,8 +370,8 @@ void strut_keep_signals(strut_reader *reader) {
 /* ---- actuators and loads ---- */
 
 /* The signal of an actuator: what it adds to a rest length or angle, or a force, or a moment. */
-static bool read_drive(strut_reader *reader, strut_fields *fields, strut_owner owner, bool hinge,
-                       bool cell, bool known, strut_actuator *actuator) {
+static bool read_drive(strut_reader *reader, strut_fields *fields, bool hinge, bool cell,
+                       bool known, strut_actuator *actuator) {
   static const int keys[] = {STRUT_KEY_ACTUATOR_SIGNAL, STRUT_KEY_ACTUATOR_FORCE,
                              STRUT_KEY_ACTUATOR_MOMENT};
   const strut_dimension dimensions[] = {hinge  ? STRUT_DIM_ANGLE
@@ -387,28 +386,27 @@ static bool read_drive(strut_reader *reader, strut_fields *fields, strut_owner o
                reader, fields->key->place,
                "%s lacks 'signal', expected a signal such as {sine: {amplitude: 1 mm, frequency: "
                "10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
-               strut_owner_text(reader, owner));
+               strut_owner_text(reader, fields->owner));
   const strut_slot *slot = strut_slot_of(fields, keys[k]);
   if (known && slot->key && k > 0 && cell)
     return strut_report_error(reader, slot->key->place,
                               "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
-                              strut_owner_text(reader, owner), strut_key_at(keys[k])->name);
+                              strut_owner_text(reader, fields->owner), strut_key_at(keys[k])->name);
   if (known && slot->key && k > 0 && hinge != (k == 2))
     return strut_report_error(reader, slot->key->place,
                               hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
                                     : "%s gives a 'moment' to a member, which takes a 'force'",
-                              strut_owner_text(reader, owner));
+                              strut_owner_text(reader, fields->owner));
   actuator->force = (uint32_t)k;
   reader->signal_quantity = k == 2 ? "moment" : known && cell ? "pressure" : NULL;
   if (slot->state == STRUT_GIVEN)
-    actuator->signal = strut_read_signal(reader, slot->value, strut_key_at(keys[k])->name, owner,
-                                         known || k > 0 ? &dimensions[k] : NULL);
+    actuator->signal = strut_read_signal(reader, slot->value, strut_key_at(keys[k])->name,
+                                         fields->owner, known || k > 0 ? &dimensions[k] : NULL);
   reader->signal_quantity = NULL;
   return actuator->signal >= 0;
 }
 
-bool strut_read_actuator(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                         void *object) {
+bool strut_read_actuator(strut_reader *reader, strut_fields *fields, void *object) {
   strut_actuator *actuator = object;
   bool hinge = strut_slot_of(fields, STRUT_KEY_ACTUATOR_HINGE)->key,
        cell = strut_slot_of(fields, STRUT_KEY_ACTUATOR_CELL)->key;
@@ -419,13 +417,13 @@ bool strut_read_actuator(strut_reader *reader, strut_fields *fields, strut_owner
               strut_report_error(reader, fields->key->place,
                                  "%s lacks 'member', expected the name of a member, or 'hinge' "
                                  "with the name of a hinge",
-                                 strut_owner_text(reader, owner));
+                                 strut_owner_text(reader, fields->owner));
   /* what it drives decides what the signal measures */
-  fine = read_drive(reader, fields, owner, hinge, cell, driven, actuator) && fine;
+  fine = read_drive(reader, fields, hinge, cell, driven, actuator) && fine;
   return fine && (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0);
 }
 
-bool strut_read_load(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
+bool strut_read_load(strut_reader *reader, strut_fields *fields, void *object) {
   strut_load *load = object;
   const strut_slot *node = strut_slot_of(fields, STRUT_KEY_LOAD_NODE);
   const strut_slot *force = strut_slot_of(fields, STRUT_KEY_LOAD_FORCE);
@@ -443,7 +441,7 @@ bool strut_read_load(strut_reader *reader, strut_fields *fields, strut_owner own
                            : NULL;
   if (wrong && !fields->broken)
     strut_report_error(reader, *wrong == 'g' ? odd->key->place : fields->key->place, "%s %s",
-                       strut_owner_text(reader, owner), wrong);
+                       strut_owner_text(reader, fields->owner), wrong);
   if (force->key) strut_place_vector(reader, force->value, load->force);
   /* the nodes of a hinge in a mirrored copy change places instead */
   if (strut_scope_flips(reader) && load->member >= 0) load->moment = -load->moment;
@@ -482,18 +480,17 @@ static void turn_unbalance(strut_reader *reader, const strut_slot *signal,
   unbalance->phase = flips ? turn - unbalance->phase : turn + unbalance->phase;
 }
 
-bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                          void *object) {
+bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, void *object) {
   strut_unbalance *unbalance = object;
   const strut_slot *signal = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SIGNAL);
   const strut_tree *speed = strut_given(fields, STRUT_KEY_UNBALANCE_SPEED);
-  bool fine = !speed || read_speed(reader, speed, owner, &unbalance->speed);
+  bool fine = !speed || read_speed(reader, speed, fields->owner, &unbalance->speed);
   if (!strut_mentions(fields, STRUT_KEY_UNBALANCE_SPEED) && signal->state == STRUT_ABSENT &&
       !fields->broken)
     fine = strut_report_error(
         reader, fields->key->place,
         "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
-        strut_owner_text(reader, owner));
+        strut_owner_text(reader, fields->owner));
   turn_unbalance(reader, signal, unbalance);
   return fine;
 }
@@ -534,13 +531,13 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
                                 "a share such as '50 %', or a length,", q.dimension);
 }
 
-bool strut_read_slider(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                       void *object) {
+bool strut_read_slider(strut_reader *reader, strut_fields *fields, void *object) {
   strut_sliding_mass *mass = object;
   const strut_tree *member = strut_given(fields, STRUT_KEY_SLIDER_MEMBER),
                    *position = strut_given(fields, STRUT_KEY_SLIDER_POSITION);
-  if (member && !is_beam(reader, member, owner))
-    mass->member = strut_read_reference(reader, member, "member", owner, STRUT_THING_MEMBER);
-  bool fine = !position || read_position(reader, position, owner, mass);
+  if (member && !is_beam(reader, member, fields->owner))
+    mass->member =
+        strut_read_reference(reader, member, "member", fields->owner, STRUT_THING_MEMBER);
+  bool fine = !position || read_position(reader, position, fields->owner, mass);
   return fine && mass->member >= 0;
 }

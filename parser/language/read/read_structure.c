@@ -66,9 +66,9 @@ static bool read_place_and_keys(strut_reader *reader, const strut_tree *key, str
         strut_owner_text(reader, owner), strut_found(reader, value));
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_NODE, value, owner, &fields);
-  strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
-  strut_require(reader, &fields, owner, key->place);
-  strut_store(reader, &fields, owner, node);
+  strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP);
+  strut_require(reader, &fields, key->place);
+  strut_store(reader, &fields, node);
   note_moves(reader, strut_slot_of(&fields, STRUT_KEY_NODE_MOVES), node);
   strut_place_point(reader, strut_slot_of(&fields, STRUT_KEY_NODE_POSITION)->value, node->position);
   return turn_support(reader, strut_slot_of(&fields, STRUT_KEY_NODE_FIXED), node) && !fields.broken;
@@ -84,8 +84,7 @@ bool strut_read_node(strut_reader *reader, const strut_tree *key, void *object) 
 void strut_read_nodes(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_NODES);
   size_t count = map ? map->count : 0;
-  reader->node_moves =
-      strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->node_moves);
+  reader->node_moves = strut_scratch_array(reader, count, sizeof *reader->node_moves);
   if (reader->node_moves) strut_read_things(reader, STRUT_THING_NODE);
 }
 
@@ -118,8 +117,7 @@ void strut_read_moves(strut_reader *reader) {
   for (size_t i = 0; i < scene->node_count && reader->node_moves; i++)
     most += reader->node_moves[i] ? 2 : 0;
   if (!most) return;
-  scene->support_motions =
-      strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->support_motions);
+  scene->support_motions = strut_keep_array(reader, most, sizeof *scene->support_motions);
   for (size_t i = 0; i < scene->node_count && scene->support_motions; i++)
     if (reader->node_moves[i]) read_moves_of(reader, i);
   reader->scope = NULL;
@@ -175,13 +173,13 @@ static strut_dimension per_strain(strut_dimension force, strut_dimension strain,
                            force.angle - n * strain.angle};
 }
 
-static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                         strut_dimension strain, strut_dimension force, strut_law *law) {
+static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_dimension strain,
+                         strut_dimension force, strut_law *law) {
   bool fine = true;
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
     const strut_law_parameter *row = strut_law_parameter_at(p);
     fine =
-        strut_store_number(reader, fields, strut_key_find(STRUT_SECTION_LAW, row->key), owner,
+        strut_store_number(reader, fields, strut_key_find(STRUT_SECTION_LAW, row->key),
                            row->power < 0 ? strain : per_strain(force, strain, row->power), law) &&
         fine;
   }
@@ -190,7 +188,7 @@ static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_owner
 
 static bool read_coefficients(strut_reader *reader, const strut_tree *list, strut_owner owner,
                               strut_dimension strain, strut_dimension force, strut_law *law) {
-  double *c = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *c);
+  double *c = strut_keep_array(reader, list->count, sizeof *c);
   bool fine = c != NULL;
   for (const strut_tree *item = c ? list->first : NULL; item; item = item->next) {
     strut_dimension dimension = per_strain(force, strain, (int)law->count + 1);
@@ -206,8 +204,8 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
                         strut_dimension strain, strut_dimension force, strut_law *law) {
   const strut_tree *list = slot->value;
   const char *key = slot->key->text;
-  double *x = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *x);
-  double *y = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *y);
+  double *x = strut_keep_array(reader, list->count, sizeof *x);
+  double *y = strut_keep_array(reader, list->count, sizeof *y);
   bool fine = x && y;
   for (const strut_tree *point = fine ? list->first : NULL; point; point = point->next) {
     size_t i = law->count++;
@@ -234,9 +232,8 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
 }
 
 /* Reports a number that the law needs and does not have, or has and does not need. */
-static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                        const strut_law *law) {
-  const char *kind = strut_law_at(law->kind)->word, *text = strut_owner_text(reader, owner);
+static bool check_needs(strut_reader *reader, strut_fields *fields, const strut_law *law) {
+  const char *kind = strut_law_at(law->kind)->word, *text = strut_owner_text(reader, fields->owner);
   bool fine = true, data = strut_mentions(fields, STRUT_KEY_LAW_DATA);
   if (data && !strut_mentions(fields, STRUT_KEY_LAW_OVER))
     fine = strut_report_error(reader, fields->map->place,
@@ -293,9 +290,9 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   const strut_tree *coefficients = strut_given(&fields, STRUT_KEY_LAW_COEFFICIENTS),
                    *data = strut_given(&fields, STRUT_KEY_LAW_DATA);
   const strut_slot *points = strut_slot_of(&fields, STRUT_KEY_LAW_POINTS);
-  strut_store(reader, &fields, within, law);
-  bool fine = !fields.broken && check_needs(reader, &fields, within, law);
-  if (!read_numbers(reader, &fields, within, strain, force, law) || !fine) return false;
+  strut_store(reader, &fields, law);
+  bool fine = !fields.broken && check_needs(reader, &fields, law);
+  if (!read_numbers(reader, &fields, strain, force, law) || !fine) return false;
   if (coefficients) return read_coefficients(reader, coefficients, within, strain, force, law);
   if (data)
     return strut_read_data_law(reader, data, strut_given(&fields, STRUT_KEY_LAW_OVER), within,
@@ -309,11 +306,10 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
 
 /* ---- members ---- */
 
-bool strut_read_member(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                       void *object) {
+bool strut_read_member(strut_reader *reader, strut_fields *fields, void *object) {
   if (strut_slot_of(fields, STRUT_KEY_MEMBER_MASS)->state == STRUT_BROKEN)
     reader->masses_unknown = true;
-  (void)owner, (void)object;
+  (void)object;
   return true;
 }
 
@@ -322,7 +318,7 @@ void strut_read_rayleigh(strut_reader *reader) {
   strut_owner owner = {"rayleigh", NULL};
   if (strut_read_section(reader, STRUT_KEY_SCENE_RAYLEIGH, STRUT_SECTION_RAYLEIGH, owner.kind,
                          &fields))
-    strut_store(reader, &fields, owner, reader->scene);
+    strut_store(reader, &fields, reader->scene);
 }
 
 void strut_read_lattice(strut_reader *reader) {
@@ -350,9 +346,8 @@ void strut_read_lattice(strut_reader *reader) {
 
 /* ---- hinges, cells, collisions ---- */
 
-bool strut_read_hinge(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
+bool strut_read_hinge(strut_reader *reader, strut_fields *fields, void *object) {
   strut_hinge *hinge = object;
-  (void)owner;
   if (strut_scope_flips(reader)) { /* counter-clockwise is the other way round */
     int32_t first = hinge->node[0];
     hinge->node[0] = hinge->node[2], hinge->node[2] = first;
@@ -361,7 +356,7 @@ bool strut_read_hinge(strut_reader *reader, strut_fields *fields, strut_owner ow
   return true;
 }
 
-bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
+bool strut_read_cell(strut_reader *reader, strut_fields *fields, void *object) {
   static const int own[] = {STRUT_KEY_CELL_STIFFNESS, STRUT_KEY_CELL_LAW, STRUT_KEY_CELL_DAMPING,
                             STRUT_KEY_CELL_REST_AREA};
   const strut_slot *gas = strut_slot_of(fields, STRUT_KEY_CELL_GAS);
@@ -377,21 +372,20 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
            strut_report_error(
                reader, elastic->place,
                "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
-               strut_owner_text(reader, owner), elastic->text, other);
+               strut_owner_text(reader, fields->owner), elastic->text, other);
   }
   if (gas->state == STRUT_GIVEN)
-    return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), fields, owner, object,
+    return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), fields, object,
                              sizeof(strut_cell));
   return other || fields->broken ||
          strut_report_error(
              reader, fields->key->place,
              "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
              "'stiffness' of its area",
-             strut_owner_text(reader, owner));
+             strut_owner_text(reader, fields->owner));
 }
 
-bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                          void *object) {
+bool strut_read_collision(strut_reader *reader, strut_fields *fields, void *object) {
   const strut_slot *node = strut_slot_of(fields, STRUT_KEY_COLLISION_NODE);
   bool pair = strut_mentions(fields, STRUT_KEY_COLLISION_NODES) ||
               strut_mentions(fields, STRUT_KEY_COLLISION_MEMBERS) ||
@@ -406,12 +400,11 @@ bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owne
       reader, alone && pair ? node->key->place : fields->key->place,
       "%s %s, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' with two "
       "members, or 'between'",
-      strut_owner_text(reader, owner),
+      strut_owner_text(reader, fields->owner),
       alone && pair ? "names a node beside a pair" : "does not name two things");
 }
 
-bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                         void *object) {
+bool strut_read_distance(strut_reader *reader, strut_fields *fields, void *object) {
   strut_distance_spring *spring = object;
   bool along = strut_mentions(fields, STRUT_KEY_DISTANCE_ALONG);
   bool pair = strut_mentions(fields, STRUT_KEY_DISTANCE_NODES);
@@ -427,5 +420,5 @@ bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner
   fields->unresolved = true;
   return strut_report_error(reader, fields->key->place,
                             "%s must have 'nodes' and 'along', or 'node' and 'line'",
-                            strut_owner_text(reader, owner));
+                            strut_owner_text(reader, fields->owner));
 }

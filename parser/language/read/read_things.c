@@ -83,10 +83,9 @@ static bool read_thing(strut_reader *reader, strut_thing thing, const strut_tree
                              : strut_read_name(reader, key, row->word);
   if (self->read) return self->read(reader, key, object) && fine;
   strut_read_fields_of(reader, self->section, key, owner, &fields);
-  if (self->group >= 0) strut_apply_groups(reader, &fields, self->group, owner);
-  strut_require(reader, &fields, owner, key->place);
-  fine = strut_store_fields(reader, &fields, owner, &reader->scene->arena, object, row->size) &&
-         fine && !fields.broken;
+  if (self->group >= 0) strut_apply_groups(reader, &fields, self->group);
+  strut_require(reader, &fields, key->place);
+  fine = strut_store_fields(reader, &fields, object, row->size) && fine && !fields.broken;
   if (fields.unresolved && self->joins) reader->ends_unknown = true;
   if (!fine && self->heavy) reader->masses_unknown = true;
   return fine && !fields.unresolved;
@@ -97,9 +96,8 @@ bool strut_reserve_things(strut_reader *reader, strut_thing thing, size_t more) 
   strut_things_read *things = &reader->things[thing];
   char *at = (char *)reader->scene + row->array, *before;
   size_t count = strut_thing_count(reader->scene, thing);
-  char *array = strut_reader_allocate(reader, &reader->scene->arena, count + more, row->size);
-  strut_source *source =
-      strut_reader_allocate(reader, &reader->scratch, count + more, sizeof *source);
+  char *array = strut_keep_array(reader, count + more, row->size);
+  strut_source *source = strut_scratch_array(reader, count + more, sizeof *source);
   if (!array || !source) return false;
   memcpy(&before, at, sizeof before);
   if (count) memcpy(array, before, count * row->size);
@@ -200,14 +198,14 @@ void strut_store_choice(const strut_key *key, void *object) {
     *(uint32_t *)(void *)tag = key->field.tag_value;
 }
 
-bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
+bool strut_store_number(strut_reader *reader, strut_fields *fields, int key,
                         strut_dimension dimension, void *object) {
   const strut_key *k = strut_key_at(key);
   const strut_slot *slot = strut_slot_of(fields, key);
   if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
   assert(k->field.type == STRUT_FIELD_DOUBLE);
   strut_store_choice(k, object);
-  return strut_read_number(reader, slot->value, k->name, owner, dimension, k->limits,
+  return strut_read_number(reader, slot->value, k->name, fields->owner, dimension, k->limits,
                            (double *)(void *)((char *)object + k->field.offset));
 }
 
@@ -237,8 +235,7 @@ static bool store_path(strut_reader *reader, const strut_key *key, const strut_t
     return strut_report_error(reader, list->place,
                               "%s runs over %zu nodes, at most %d are possible",
                               strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
-  if (count > 2)
-    guides = strut_reader_allocate(reader, &reader->scene->arena, count - 2, sizeof *guides);
+  if (count > 2) guides = strut_keep_array(reader, count - 2, sizeof *guides);
   if (count > 2 && !guides) return false;
   memcpy(object + key->field.beside, &guides, sizeof guides);
   for (const strut_tree *item = list->first; item; item = item->next) {
@@ -298,7 +295,7 @@ static bool read_texts(strut_reader *reader, const strut_key *key, const strut_t
 }
 
 static bool store_list(strut_reader *reader, const strut_key *key, const strut_slot *slot,
-                       strut_owner owner, strut_arena *arena, char *object) {
+                       strut_owner owner, char *object) {
   const strut_field *field = &key->field;
   size_t count = slot->value->count;
   if (field->type == STRUT_FIELD_NODE_SET)
@@ -313,7 +310,7 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
                 : field->type == STRUT_FIELD_DOUBLE_PAIR ? 2 * sizeof(double)
                 : field->type == STRUT_FIELD_TEXT        ? sizeof(const char *)
                                                          : sizeof(double);
-  void *array = strut_reader_allocate(reader, arena, count, size);
+  void *array = strut_keep_array(reader, count, size);
   if (!array) return false;
   memcpy(object + field->offset, &array, sizeof array);
   *(size_t *)(void *)(object + field->number) = count;
@@ -327,34 +324,34 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
 /* ---- mappings ---- */
 
 bool strut_read_nested(strut_reader *reader, const strut_key *key, strut_fields *outer,
-                       strut_owner owner, void *object, size_t object_size) {
+                       void *object, size_t object_size) {
   char text[200];
   strut_fields fields;
   const strut_slot *slot = &outer->slot[key - strut_key_at(strut_section_first(key->section))];
   snprintf(text, sizeof text, "the %s of %.150s", *key->words ? key->words : key->name,
-           strut_owner_text(reader, owner));
+           strut_owner_text(reader, outer->owner));
   strut_owner within = {text, NULL};
   strut_read_fields(reader, strut_section_below(key), slot->value, within, &fields);
   fields.key = slot->key, fields.outer = outer;
-  strut_require(reader, &fields, within, slot->key->place);
-  return strut_store_fields(reader, &fields, within, reader->keep, object, object_size) &&
-         !fields.broken;
+  strut_require(reader, &fields, slot->key->place);
+  return strut_store_fields(reader, &fields, object, object_size) && !fields.broken;
 }
 
 /* A law's strain and force follow from what its force measures: a moment acts on an angle, a pressure on an area. */
 static bool store_nested(strut_reader *reader, const strut_key *key, strut_fields *fields,
-                         const strut_slot *slot, strut_owner owner, char *object) {
+                         const strut_slot *slot, char *object) {
   void *within = object + key->field.offset;
   if (key->type != STRUT_TYPE_LAW)
-    return strut_read_nested(reader, key, fields, owner, within, key->field.size);
+    return strut_read_nested(reader, key, fields, within, key->field.size);
   strut_dimension strain = key->measure == STRUT_MEASURE_MOMENT     ? STRUT_DIM_ANGLE
                            : key->measure == STRUT_MEASURE_PRESSURE ? STRUT_DIM_AREA
                                                                     : STRUT_DIM_LENGTH;
-  return strut_read_law(reader, slot, owner, strain, strut_measure_dimension(key->measure), within);
+  return strut_read_law(reader, slot, fields->owner, strain, strut_measure_dimension(key->measure),
+                        within);
 }
 
 static bool store_key(strut_reader *reader, const strut_key *key, strut_fields *fields,
-                      strut_slot *slot, strut_owner owner, strut_arena *arena, char *object) {
+                      strut_slot *slot, char *object) {
   const strut_dimension dimension = strut_measure_dimension(key->measure);
   void *field = object + key->field.offset;
   bool fine = true;
@@ -366,19 +363,21 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_fields *
   switch (key->field.role) {
     case STRUT_FIELD_VALUE:
       if (key->type == STRUT_TYPE_SIGNAL)
-        fine = (*(int32_t *)field =
-                    strut_read_signal(reader, slot->value, key->name, owner, &dimension)) >= 0;
+        fine = (*(int32_t *)field = strut_read_signal(reader, slot->value, key->name, fields->owner,
+                                                      &dimension)) >= 0;
       else if (key->field.direction)
-        fine = store_direction(reader, key, slot->value, owner, field);
+        fine = store_direction(reader, key, slot->value, fields->owner, field);
       else if (!strut_diagnostics_full(reader->diagnostics)) /* else the object will not be used */
         store_value(reader, key, slot, field);
       break;
     case STRUT_FIELD_REFERENCE:
-      fine = read_references(reader, key, slot->value, owner, field);
+      fine = read_references(reader, key, slot->value, fields->owner, field);
       break;
-    case STRUT_FIELD_PATH: fine = store_path(reader, key, slot->value, owner, object); break;
-    case STRUT_FIELD_LIST: fine = store_list(reader, key, slot, owner, arena, object); break;
-    case STRUT_FIELD_NESTED: fine = store_nested(reader, key, fields, slot, owner, object); break;
+    case STRUT_FIELD_PATH:
+      fine = store_path(reader, key, slot->value, fields->owner, object);
+      break;
+    case STRUT_FIELD_LIST: fine = store_list(reader, key, slot, fields->owner, object); break;
+    case STRUT_FIELD_NESTED: fine = store_nested(reader, key, fields, slot, object); break;
     case STRUT_FIELD_PLACES:
     case STRUT_FIELD_BY_HAND:
     case STRUT_FIELD_NONE:
@@ -394,29 +393,28 @@ static bool is_reference(const strut_field *field) {
          (field->role == STRUT_FIELD_LIST && field->type == STRUT_FIELD_INT32);
 }
 
-bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                        strut_arena *arena, void *object, size_t object_size) {
+bool strut_store_fields(strut_reader *reader, strut_fields *fields, void *object,
+                        size_t object_size) {
   int size = strut_section_size(fields->section);
   const strut_key *keys = strut_key_at(strut_section_first(fields->section));
-  bool fine = strut_check_companions(reader, fields, owner);
+  bool fine = strut_check_companions(reader, fields);
   for (int i = 0; i < size; i++) {
     strut_slot *slot = &fields->slot[i];
     bool given = slot->state == STRUT_GIVEN;
     if (!given && keys[i].need != STRUT_REQUIRED) continue;
     assert(!keys[i].field.object_size || keys[i].field.object_size == object_size);
-    bool read = given && store_key(reader, &keys[i], fields, slot, owner, arena, object);
+    bool read = given && store_key(reader, &keys[i], fields, slot, object);
     if (!read && is_reference(&keys[i].field)) fields->unresolved = true;
     if (given && !read) fine = false;
   }
   (void)object_size;
-  if (by_hand[fields->section])
-    fine = by_hand[fields->section](reader, fields, owner, object) && fine;
+  if (by_hand[fields->section]) fine = by_hand[fields->section](reader, fields, object) && fine;
   return fine;
 }
 
 bool strut_read_sized_object(strut_reader *reader, strut_section section, const strut_tree *map,
                              strut_owner owner, strut_fields *fields, void *object, size_t size) {
   strut_read_fields(reader, section, map, owner, fields);
-  if (!fields->broken) strut_require(reader, fields, owner, map->place);
-  return strut_store_fields(reader, fields, owner, reader->keep, object, size) && !fields->broken;
+  if (!fields->broken) strut_require(reader, fields, map->place);
+  return strut_store_fields(reader, fields, object, size) && !fields->broken;
 }

@@ -26,10 +26,18 @@ bool strut_report_error(strut_reader *reader, strut_place place, const char *for
   return false;
 }
 
-void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
+static void *allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
   void *block = strut_arena_allocate(arena, count, size);
   if (!block) reader->out_of_memory = true;
   return block;
+}
+
+void *strut_keep_array(strut_reader *reader, size_t count, size_t size) {
+  return allocate(reader, reader->keep, count, size);
+}
+
+void *strut_scratch_array(strut_reader *reader, size_t count, size_t size) {
+  return allocate(reader, &reader->scratch, count, size);
 }
 
 void strut_reserve_names(strut_reader *reader, strut_name_map *map, size_t count) {
@@ -269,8 +277,8 @@ static const char *parameter_given(strut_reader *reader, const strut_tree *value
   const strut_parameter_state *parameter =
       strut_parameter_in_scope(reader, strut_scope_of(reader, value), value->text);
   if (!parameter || parameter->value->place.file != value->place.file) return "";
-  return strut_formatted(reader, &reader->scratch, "; line %u gives '%s'",
-                         (unsigned)parameter->value->place.line, parameter->name);
+  return strut_scratch_text(reader, "; line %u gives '%s'", (unsigned)parameter->value->place.line,
+                            parameter->name);
 }
 
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
@@ -348,8 +356,8 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
 static const char *list_of_names(strut_reader *reader, const strut_namespace *names) {
   const char *text = names->count <= 14 ? "" : NULL;
   for (size_t i = 0; text && i < names->count; i++)
-    text = strut_formatted(reader, &reader->scratch, "%s%s'%s'", text,
-                           i ? ", " : "; the names here are ", names->name(names->context, i));
+    text = strut_scratch_text(reader, "%s%s'%s'", text, i ? ", " : "; the names here are ",
+                              names->name(names->context, i));
   return text ? text : "";
 }
 
@@ -369,8 +377,8 @@ static int32_t find_named_by_parameter(strut_reader *reader, const strut_tree *v
   const strut_setting *set =
       strut_parameter_in_scope(reader, strut_scope_of(reader, value), value->text)->set;
   if (set && !set->place.line)
-    option = strut_formatted(reader, &reader->scratch, "--set %s=%s: ", value->text,
-                             strut_sanitised_text(reader, set->text));
+    option = strut_scratch_text(reader, "--set %s=%s: ", value->text,
+                                strut_sanitised_text(reader, set->text));
   strut_report_error(reader, text->place, "%sunknown %s '%s' in parameter '%s'%s", option,
                      names->kind, strut_sanitised_text(reader, text->text), value->text,
                      *hint ? hint : list_of_names(reader, names));

@@ -37,6 +37,7 @@ typedef struct strut_slot {
 /** The keys of one mapping. */
 typedef struct strut_fields {
   strut_section section;
+  strut_owner owner;          /* what messages call it */
   bool broken;                /* some value, or the mapping itself, could not be read */
   bool unresolved;            /* a thing that it must name is not known */
   const strut_tree *map;      /* NULL: the mapping is absent */
@@ -212,6 +213,8 @@ const char *strut_found(strut_reader *reader, const strut_tree *value);
 /** A text of at most 1199 bytes in the arena; never NULL, since the reader remembers when memory is out. */
 const char *strut_formatted(strut_reader *reader, strut_arena *arena, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+#define strut_scratch_text(reader, ...) strut_formatted(reader, &(reader)->scratch, __VA_ARGS__)
+#define strut_kept_text(reader, ...) strut_formatted(reader, (reader)->keep, __VA_ARGS__)
 /** A copy of the piece, in scratch. */
 const char *strut_piece_text(strut_reader *reader, strut_piece piece);
 /** The unit of a dimension, "kg m s^-2", where it is kept; `none` of one without. */
@@ -271,8 +274,9 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index);
 /** Makes room for so many names in a map; remembers when memory is out. */
 void strut_reserve_names(strut_reader *reader, strut_name_map *map, size_t count);
-/** count * size zeroed bytes of an arena; remembers when memory is out. */
-void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size);
+/** count * size zeroed bytes of what is kept, or of scratch; the reader remembers when memory is out. */
+void *strut_keep_array(strut_reader *reader, size_t count, size_t size);
+void *strut_scratch_array(strut_reader *reader, size_t count, size_t size);
 
 /**
  * The index of the next thing of an array. Once the diagnostics are full, things are read for their
@@ -323,8 +327,7 @@ void strut_error_remember(strut_reader *reader, strut_place place, const char *f
 void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
                        strut_owner owner, strut_fields *fields);
 /** Reports what is required and absent, at the place given. */
-void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                   strut_place place);
+void strut_require(strut_reader *reader, strut_fields *fields, strut_place place);
 /** One of the words of `key`; false for another text, which was reported. */
 bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
                      strut_owner owner, int *word);
@@ -359,7 +362,7 @@ const strut_tree *strut_entries(strut_reader *reader, int key);
 size_t strut_entry_count(strut_reader *reader, int key);
 
 /** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
-bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner);
+bool strut_check_companions(strut_reader *reader, strut_fields *fields);
 /** What a study must compute for a key of it to mean anything, "modes|path"; NULL: anything. */
 const char *strut_study_key_computes(int key);
 
@@ -370,36 +373,34 @@ const char *strut_study_key_computes(int key);
  * things, signals, lists and nested mappings; then what the section's own code adds (strut_section_reader). Numbers
  * whose unit depends on the context are left to the caller. False: some of it could not be read.
  */
-bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                        strut_arena *arena, void *object, size_t object_size);
+bool strut_store_fields(strut_reader *reader, strut_fields *fields, void *object,
+                        size_t object_size);
 /** The same of a whole object, whose type is that of the section; texts in the reader's memory for what it keeps. */
-#define strut_store(reader, fields, owner, object)                                                 \
-  strut_store_fields(reader, fields, owner, (reader)->keep, object, sizeof *(object))
+#define strut_store(reader, fields, object)                                                        \
+  strut_store_fields(reader, fields, object, sizeof *(object))
 /** Reads a mapping with all that it requires, and stores it. False: some of it could not be read. */
 bool strut_read_sized_object(strut_reader *reader, strut_section section, const strut_tree *map,
                              strut_owner owner, strut_fields *fields, void *object, size_t size);
 #define strut_read_object(reader, section, map, owner, fields, object)                             \
   strut_read_sized_object(reader, section, map, owner, fields, object, sizeof *(object))
 /** Stores the value of a key that is given, by its row; `dimension` is that of a number. */
-bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
+bool strut_store_number(strut_reader *reader, strut_fields *fields, int key,
                         strut_dimension dimension, void *object);
 /** Sets the tag that the choice of a key sets. */
 void strut_store_choice(const strut_key *key, void *object);
 /** Reads the mapping that is the value of a key of `outer`, "the KEY of OWNER", and stores its values in `object`. */
 bool strut_read_nested(strut_reader *reader, const strut_key *key, strut_fields *outer,
-                       strut_owner owner, void *object, size_t object_size);
+                       void *object, size_t object_size);
 
 /** What rows do not say about a section: reads the keys that are BY_HAND. False: it could not be read. */
-typedef bool strut_section_reader(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                                  void *object);
+typedef bool strut_section_reader(strut_reader *reader, strut_fields *fields, void *object);
 
 /* parameters.c: groups */
 
 enum { STRUT_MOST_GROUPS = 64 }; /* that one thing may name */
 void strut_read_groups(strut_reader *reader);
 /** Fills absent keys from the groups that the fields name. */
-void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_key,
-                        strut_owner owner);
+void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_key);
 /** The groups that `group:` names, in order; unknown ones are left out. Returns their number. */
 size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_group **groups);
 void strut_report_unused_groups(strut_reader *reader);

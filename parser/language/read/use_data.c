@@ -63,7 +63,7 @@ static bool take_rows(strut_reader *reader, const columns *self, bool falls, con
   size_t count = count_whole(self), rows = self->table->row_count, to = 0;
   *x = self->x->values, *y = self->y->values;
   if (count == rows && !falls) return true;
-  double *copy = strut_reader_allocate(reader, &reader->scene->arena, 2 * count, sizeof *copy);
+  double *copy = strut_keep_array(reader, 2 * count, sizeof *copy);
   for (size_t i = 0; copy && i < rows; i++) {
     size_t k = falls ? rows - 1 - i : i;
     if (!is_whole(self, k)) continue;
@@ -164,7 +164,7 @@ static size_t mean_of_ways(const piece *pieces, double *x, double *y, double *ap
 static bool take_means(strut_reader *reader, const columns *self, const strut_tree *value,
                        strut_law *law) {
   piece pieces[PIECES] = {{.count = {0}}};
-  double *x = strut_reader_allocate(reader, &reader->scene->arena, 2 * PIECES, sizeof *x);
+  double *x = strut_keep_array(reader, 2 * PIECES, sizeof *x);
   double apart = 0.0;
   if (!x) return false;
   if (!(self->x->most > self->x->least))

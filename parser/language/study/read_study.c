@@ -13,7 +13,7 @@
 static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the path", NULL};
 
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size) {
-  return strut_reader_allocate(reader->reader, &reader->file->arena, count, size);
+  return strut_keep_array(reader->reader, count, size);
 }
 
 const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name) {
@@ -232,7 +232,7 @@ static void read_figure(strut_study_reader *reader, const strut_tree *key,
   strut_read_name(reader->reader, key, "figure");
   strut_read_fields(reader->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
   *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
-  strut_store(reader->reader, &fields, owner, figure);
+  strut_store(reader->reader, &fields, figure);
   read_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), owner, figure->x_limits,
               &figure->limit_units[0]);
   read_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), owner, figure->y_limits,
@@ -283,7 +283,7 @@ static void read_path(strut_study_reader *reader, const strut_slot *slot) {
 static void read_rest(strut_study_reader *reader, strut_fields *top) {
   strut_study *study = &reader->file->study;
   study->name = study->description = "";
-  strut_store(reader->reader, top, study_owner, study);
+  strut_store(reader->reader, top, study);
   read_path(reader, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
   read_figures(reader, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
@@ -351,7 +351,7 @@ static strut_status read_all(strut_study_reader *study_reader, const strut_setti
   }
   strut_read_fields(reader, STRUT_SECTION_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
-  strut_require(reader, &top, study_owner, strut_root_place(reader));
+  strut_require(reader, &top, strut_root_place(reader));
   require_points(study_reader, &top);
   read_rest(study_reader, &top);
   status = strut_study_open_sources(study_reader, &top, error);

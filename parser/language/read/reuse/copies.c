@@ -277,11 +277,11 @@ static const char *count_hint(strut_reader *reader, const strut_placement *place
   long long number = strtoll(name, &end, 10);
   bool counted = length && end == name + length && number >= placement->count[which];
   if (!counted) return "";
-  return strut_formatted(reader, &reader->scratch, "; '%s' has the copies 0 to %lld%s",
-                         placement->name, (long long)placement->count[which] - 1,
-                         placement->numbers == 1 ? ""
-                         : which                 ? " along its second count"
-                                                 : " along its first count");
+  return strut_scratch_text(reader, "; '%s' has the copies 0 to %lld%s", placement->name,
+                            (long long)placement->count[which] - 1,
+                            placement->numbers == 1 ? ""
+                            : which                 ? " along its second count"
+                                                    : " along its first count");
 }
 
 const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
@@ -336,8 +336,7 @@ typedef struct strut_copied_error {
 static copied_error *error_slot(strut_reader *reader, strut_place place, const char *format) {
   struct strut_copies *copies = reader->copies;
   if (!copies->errors)
-    copies->errors =
-        strut_reader_allocate(reader, &reader->scratch, COPIED_SLOTS, sizeof *copies->errors);
+    copies->errors = strut_scratch_array(reader, COPIED_SLOTS, sizeof *copies->errors);
   if (!copies->errors) return NULL;
   size_t hash =
       ((size_t)place.line * 31 + place.column) * 31 + place.file + ((uintptr_t)format >> 3);

@@ -47,11 +47,11 @@ static void copy_entries(strut_expansion *expansion, const strut_tree *map, stru
   struct pair {
     strut_placed_tree key;
     strut_tree value;
-  } *pairs = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *pairs);
+  } *pairs = strut_scratch_array(reader, map->count, sizeof *pairs);
   if (!pairs) expansion->stopped = true;
   for (const strut_tree *from = map->first; from && !expansion->stopped; from = from->next->next) {
     struct pair *pair = pairs++;
-    const char *name = strut_formatted(reader, &reader->scratch, "%s%s", scope->prefix, from->text);
+    const char *name = strut_scratch_text(reader, "%s%s", scope->prefix, from->text);
     pair->key = (strut_placed_tree){*from, scope};
     pair->key.tree.placed = true;
     pair->key.tree.text = name;
@@ -87,8 +87,7 @@ size_t strut_count_things(strut_fields *fields) {
 
 void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut_tree *first,
                       const strut_tree *second, const strut_tree *place) {
-  strut_merger *merger =
-      strut_reader_allocate(expansion->reader, &expansion->reader->scratch, 1, sizeof *merger);
+  strut_merger *merger = strut_scratch_array(expansion->reader, 1, sizeof *merger);
   if (!merger) return;
   *merger = (strut_merger){.scope = scope, .a = first, .b = second, .place = place};
   if (!expansion->copies->mergers_end) expansion->copies->mergers_end = &expansion->copies->mergers;
@@ -160,8 +159,8 @@ typedef struct placed_index {
 } placed_index;
 
 static bool index_placed(strut_reader *reader, strut_tree *first, size_t count, placed_index *all) {
-  all->key = strut_reader_allocate(reader, &reader->scratch, count, sizeof *all->key);
-  all->removed = strut_reader_allocate(reader, &reader->scratch, count, sizeof *all->removed);
+  all->key = strut_scratch_array(reader, count, sizeof *all->key);
+  all->removed = strut_scratch_array(reader, count, sizeof *all->removed);
   for (strut_tree *tree = first; tree && all->key && all->removed; tree = tree->next->next) {
     strut_add_name(reader, &all->names, tree->text, all->count);
     all->key[all->count++] = tree;
@@ -268,7 +267,7 @@ void strut_join_entries(strut_expansion *expansion, int key) {
   strut_slot *slot = strut_slot_of(&reader->top, key);
   strut_entry_list *list = &expansion->list[key - strut_section_first(STRUT_SECTION_SCENE)];
   if (!list->count || slot->state == STRUT_BROKEN) return;
-  strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
+  strut_tree *map = strut_scratch_array(reader, 1, sizeof *map);
   const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
   if (!map) return;
   *map = slot->state == STRUT_GIVEN ? *slot->value : *place->value;

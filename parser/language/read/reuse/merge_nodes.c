@@ -185,8 +185,7 @@ static int compare_names(const void *first, const void *second) {
 
 static bool sort_names(merging *self) {
   if (self->by_name) return true;
-  self->by_name = strut_reader_allocate(self->reader, &self->reader->scratch, self->count,
-                                        sizeof *self->by_name);
+  self->by_name = strut_scratch_array(self->reader, self->count, sizeof *self->by_name);
   for (size_t i = 0; self->by_name && i < self->count; i++)
     self->by_name[i] = (named_node){self->reader->scene->nodes[i].name, (int32_t)i};
   if (self->by_name) qsort(self->by_name, self->count, sizeof *self->by_name, compare_names);
@@ -269,10 +268,9 @@ static void merge_touching(merging *self, const strut_merger *merger) {
 /* The name of a port means the node behind it. */
 static void name_port(strut_reader *reader, const strut_port *port) {
   if (port->node >= 0)
-    strut_add_name(
-        reader, &reader->things[STRUT_THING_NODE].names,
-        strut_formatted(reader, &reader->scratch, "%s%s", port->scope->prefix, port->key->text),
-        (size_t)port->node);
+    strut_add_name(reader, &reader->things[STRUT_THING_NODE].names,
+                   strut_scratch_text(reader, "%s%s", port->scope->prefix, port->key->text),
+                   (size_t)port->node);
 }
 
 /* Is a node other than the port's own called by its name? */
@@ -302,8 +300,8 @@ static void find_ports(strut_reader *reader) {
 static void compact(merging *self) {
   strut_reader *reader = self->reader;
   strut_scene *scene = reader->scene;
-  int32_t *index = strut_reader_allocate(reader, &reader->scratch, self->count, sizeof *index);
-  const char **name = strut_reader_allocate(reader, &reader->scratch, self->count, sizeof *name);
+  int32_t *index = strut_scratch_array(reader, self->count, sizeof *index);
+  const char **name = strut_scratch_array(reader, self->count, sizeof *name);
   if (!index || !name) return;
   int32_t stays = 0;
   for (size_t i = 0; i < self->count; i++) {
@@ -334,7 +332,7 @@ void strut_merge_nodes(strut_reader *reader) {
   merging m = {.reader = reader, .count = reader->scene->node_count};
   if (reader->copies && m.count) find_ports(reader);
   if (!first || !m.count || strut_diagnostics_full(reader->diagnostics)) return;
-  m.root = strut_reader_allocate(reader, &reader->scratch, m.count, sizeof *m.root);
+  m.root = strut_scratch_array(reader, m.count, sizeof *m.root);
   if (!m.root) return;
   for (size_t i = 0; i < m.count; i++) m.root[i] = (int32_t)i;
   m.size = structure_size(reader->scene);

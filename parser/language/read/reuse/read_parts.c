@@ -19,14 +19,14 @@ static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_c
   const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
   *list = (strut_part_list){0};
   if (!map) return;
-  list->part = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *list->part);
+  list->part = strut_scratch_array(reader, map->count, sizeof *list->part);
   for (const strut_tree *key = map->first; key && list->part; key = key->next->next) {
     strut_part *part = &list->part[list->count++];
     *part = (strut_part){.name = key->text, .key = key, .home = home};
     strut_owner owner = {"part", key->text};
     bool fine = strut_read_name(reader, key, "part");
     strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
-    strut_store(reader, &part->fields, owner, &part->keys);
+    strut_store(reader, &part->fields, &part->keys);
     part->broken = !fine || part->fields.broken || part->keys.use; /* a file that was not read */
   }
 }
@@ -61,8 +61,7 @@ static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
 
 static strut_copy *new_scope(strut_expansion *expansion, strut_scope_kind kind,
                              const strut_placement *placement, strut_copy *outer) {
-  strut_copy *copy =
-      strut_reader_allocate(expansion->reader, &expansion->reader->scratch, 1, sizeof *copy);
+  strut_copy *copy = strut_scratch_array(expansion->reader, 1, sizeof *copy);
   if (!copy) {
     expansion->stopped = true;
     return NULL;
@@ -94,10 +93,8 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
   const strut_tree *map = copy->placement->part->keys.parameters;
   const strut_tree *given = set ? set->first : NULL;
   bool fine = true;
-  copy->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
-                                           sizeof *copy->parameters);
-  strut_part_value *values =
-      strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0, sizeof *values);
+  copy->parameters = strut_scratch_array(reader, map ? map->count : 0, sizeof *copy->parameters);
+  strut_part_value *values = strut_scratch_array(reader, map ? map->count : 0, sizeof *values);
   if (!copy->parameters || !values) return false;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
     strut_parameter_state *parameters = &copy->parameters[copy->parameter_count++];
@@ -179,7 +176,7 @@ strut_copy *strut_make_copy(strut_expansion *expansion, strut_placing *placing,
     strut_owner owner = {"place", placing->placement->key->text};
     strut_read_fields(reader, STRUT_SECTION_PLACE, placing->placement->key->next, owner,
                       &placing->fields);
-    strut_store(reader, &placing->fields, owner, &placing->keys);
+    strut_store(reader, &placing->fields, &placing->keys);
   }
   bool fine =
       read_copy_parameters(reader, copy, place, placing->keys.set) && !placing->fields.broken;
@@ -198,13 +195,11 @@ static void enter_port(strut_expansion *expansion, const strut_port *port) {
   const strut_tree *inner = port->key->next;
   if (inner->kind != STRUT_TREE_SCALAR) return;
   const char *prefix = port->scope->prefix;
-  int32_t node =
-      strut_name_map_find(&expansion->copies->node_entries,
-                          strut_formatted(reader, &reader->scratch, "%s%s", prefix, inner->text));
+  int32_t node = strut_name_map_find(&expansion->copies->node_entries,
+                                     strut_scratch_text(reader, "%s%s", prefix, inner->text));
   if (node >= 0)
     strut_add_name(reader, &expansion->copies->node_entries,
-                   strut_formatted(reader, &reader->scratch, "%s%s", prefix, port->key->text),
-                   (size_t)node);
+                   strut_scratch_text(reader, "%s%s", prefix, port->key->text), (size_t)node);
 }
 
 /* The names by which the copy is seen from outside. */
@@ -223,7 +218,7 @@ static void add_ports(strut_expansion *expansion, strut_copy *copy) {
   copies->ported_copies[copies->ported_count] = copy;
   strut_add_name(reader, &copies->ported, name, copies->ported_count++);
   for (const strut_tree *key = ports->first; key; key = key->next->next) {
-    strut_port *port = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *port);
+    strut_port *port = strut_scratch_array(reader, 1, sizeof *port);
     if (!port) return;
     *port = (strut_port){.scope = copy, .key = key, .node = -1};
     if (!copies->ports_end) copies->ports_end = &copies->ports;
@@ -254,7 +249,7 @@ static void link_copies(strut_expansion *expansion, strut_fields *next, strut_co
   link->next = other, link->twist = twist;
   strut_copy_things(expansion, next, link);
   strut_next_keys keys = {0};
-  strut_store(expansion->reader, next, ((strut_owner){"'next'", NULL}), &keys);
+  strut_store(expansion->reader, next, &keys);
   strut_read_merge(expansion, keys.merge, link, STRUT_KEY_NEXT_MERGE);
 }
 
@@ -353,10 +348,8 @@ static void make_copies(strut_expansion *expansion, strut_placing *placing) {
       expansion->copies->things += (size_t)all * (size_t)each;
     return;
   }
-  strut_copy **copies =
-      strut_reader_allocate(reader, &reader->scratch, (size_t)all, sizeof *copies);
-  strut_copy **places =
-      strut_reader_allocate(reader, &reader->scratch, (size_t)all, sizeof *places);
+  strut_copy **copies = strut_scratch_array(reader, (size_t)all, sizeof *copies);
+  strut_copy **places = strut_scratch_array(reader, (size_t)all, sizeof *places);
   if (!copies || !places) return;
   for (int64_t n = 0; n < all && !expansion->stopped; n++) {
     const int64_t number[2] = {n / repetition->count[1], n % repetition->count[1]};
@@ -378,11 +371,11 @@ static void make_copies(strut_expansion *expansion, strut_placing *placing) {
     around->prefix = placing->outer ? placing->outer->prefix : "";
     link->prefix = copies[0]->prefix, link->prefix_length = copies[0]->prefix_length;
     link->next = around;
-    strut_placed_tree *other = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *other);
+    strut_placed_tree *other = strut_scratch_array(reader, 1, sizeof *other);
     if (!other) return;
     *other = (strut_placed_tree){*tree->next, link};
     other->tree.placed = true;
-    other->tree.text = strut_formatted(reader, &reader->scratch, "next.%s", tree->next->text);
+    other->tree.text = strut_scratch_text(reader, "next.%s", tree->next->text);
     strut_add_merger(expansion, link, tree, &other->tree,
                      strut_slot_of(&placing->fields, STRUT_KEY_PLACE_ONTO)->key);
   }
@@ -419,20 +412,18 @@ bool strut_read_placement(strut_expansion *expansion, const strut_tree *key, str
                           strut_placing *placing) {
   strut_reader *reader = expansion->reader;
   strut_owner owner = {"place", key->text};
-  strut_placement *placement =
-      strut_reader_allocate(reader, &reader->scratch, 1, sizeof *placement);
+  strut_placement *placement = strut_scratch_array(reader, 1, sizeof *placement);
   strut_copy *scope = new_scope(expansion, STRUT_SCOPE_PLACE, placement, outer);
   *placing = (strut_placing){.placement = placement, .outer = outer};
   if (!placement || !scope) return false;
   *placement = (strut_placement){.key = key, .count = {1, 1}};
-  placement->name =
-      strut_formatted(reader, &reader->scratch, "%s%s", outer ? outer->prefix : "", key->text);
+  placement->name = strut_scratch_text(reader, "%s%s", outer ? outer->prefix : "", key->text);
   scope->numbers = count_numbers(key->next); /* as in the first copy */
   reader->scope = scope;
   bool fine = strut_read_name(reader, key, "placement");
   strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &placing->fields);
-  strut_require(reader, &placing->fields, owner, key->place);
-  strut_store(reader, &placing->fields, owner, &placing->keys);
+  strut_require(reader, &placing->fields, key->place);
+  strut_store(reader, &placing->fields, &placing->keys);
   scope->numbers = 0;
   placement->part = read_part_name(reader, outer, placing->keys.part, owner);
   fine = strut_read_repeat(reader, strut_slot_of(&placing->fields, STRUT_KEY_PLACE_REPEAT),
@@ -503,8 +494,8 @@ static void read_limit(strut_reader *reader) {
 const char *strut_limit_hint(strut_reader *reader) {
   return reader->limit_things >= STRUT_MOST_THINGS
              ? ""
-             : strut_formatted(reader, &reader->scratch,
-                               "; 'limit_things' of the scene allows up to %d", STRUT_MOST_THINGS);
+             : strut_scratch_text(reader, "; 'limit_things' of the scene allows up to %d",
+                                  STRUT_MOST_THINGS);
 }
 
 /* Counts first, then copies. */
@@ -538,7 +529,7 @@ void strut_read_parts(strut_reader *reader) {
     return;
   }
   strut_expansion e = {.reader = reader};
-  reader->copies = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *reader->copies);
+  reader->copies = strut_scratch_array(reader, 1, sizeof *reader->copies);
   e.copies = reader->copies;
   if (!e.copies) return;
   read_part_list(reader, parts, NULL, &e.copies->parts);
@@ -549,7 +540,7 @@ void strut_read_parts(strut_reader *reader) {
   for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++)
     strut_join_entries(&e, first + k);
   if (e.contacts.count) {
-    strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
+    strut_tree *map = strut_scratch_array(reader, 1, sizeof *map);
     if (map) *map = (strut_tree){.kind = STRUT_TREE_MAP, .first = e.contacts.first};
     e.copies->contacts = map;
   }
