@@ -351,5 +351,5 @@ bool strut_read_frame(strut_expansion *expansion, strut_placing *placing, strut_
     return strut_report_error(reader, fit && !two ? scale->place : turn->key->place,
                               fit && !two ? "'scale: fit' needs two pairs in 'onto'"
                                           : "two pairs in 'onto' turn the copy; leave 'turn' out");
-  return expansion->weighing || !onto || lay_onto(expansion, copy, onto, fit, frame);
+  return !onto || lay_onto(expansion, copy, onto, fit, frame);
 }

@@ -322,7 +322,7 @@ const char *strut_local_name(const strut_reader *reader, const char *name) {
 
 /* ---- messages ---- */
 
-enum { COPIED_SLOTS = 4096 }; /* more than messages are stored */
+enum { MOST_COPIED = STRUT_DIAGNOSTICS_MOST };
 
 /* A message about a copy, which stands for those of all copies. */
 typedef struct strut_copied_error {
@@ -333,20 +333,16 @@ typedef struct strut_copied_error {
   int64_t copies;
 } copied_error;
 
+/* Its message of that place and format, a free slot for one, or NULL. */
 static copied_error *error_slot(strut_reader *reader, strut_place place, const char *format) {
   struct strut_copies *copies = reader->copies;
   if (!copies->errors)
-    copies->errors = strut_scratch_array(reader, COPIED_SLOTS, sizeof *copies->errors);
-  if (!copies->errors) return NULL;
-  size_t hash =
-      ((size_t)place.line * 31 + place.column) * 31 + place.file + ((uintptr_t)format >> 3);
-  for (size_t k = 0; k < COPIED_SLOTS; k++) {
-    copied_error *slot = &copies->errors[(hash + k) % COPIED_SLOTS];
-    bool same = slot->format == format && slot->place.line == place.line &&
-                slot->place.column == place.column && slot->place.file == place.file;
-    if (!slot->format || (same && slot->first->placement->key == reader->scope->placement->key))
+    copies->errors = strut_scratch_array(reader, MOST_COPIED, sizeof(copied_error));
+  for (copied_error *slot = copies->errors; slot && slot < copies->errors + MOST_COPIED; slot++)
+    if (!slot->format ||
+        (slot->format == format && memcmp(&slot->place, &place, sizeof place) == 0 &&
+         slot->first->placement->key == reader->scope->placement->key))
       return slot;
-  }
   return NULL;
 }
 
@@ -414,7 +410,7 @@ void strut_error_remember(strut_reader *reader, strut_place place, const char *f
 
 void strut_note_copies(strut_reader *reader) {
   const copied_error *errors = reader->copies ? reader->copies->errors : NULL;
-  for (size_t i = 0; errors && i < COPIED_SLOTS; i++)
+  for (size_t i = 0; errors && i < MOST_COPIED; i++)
     if (errors[i].format && errors[i].item != SIZE_MAX)
       note_copy(reader, errors[i].item, errors[i].first, errors[i].copies);
 }

@@ -171,7 +171,6 @@ typedef struct strut_expansion {
   struct strut_copies *copies;
   strut_entry_list list[STRUT_MOST_KEYS]; /* of the keys of the scene */
   strut_entry_list contacts;
-  bool weighing; /* nothing is copied yet */
   bool stopped;
 } strut_expansion;
 

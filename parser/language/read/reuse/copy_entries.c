@@ -97,7 +97,7 @@ void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut
 
 void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut_copy *scope,
                       int key) {
-  if (!value || expansion->weighing) return;
+  if (!value) return;
   expansion->reader->scope = scope; /* one message for all copies */
   if (value->kind == STRUT_TREE_SCALAR && strcmp(value->text, "touching") == 0)
     strut_add_merger(expansion, scope, NULL, NULL, value);

@@ -3,8 +3,7 @@
  * Parts and their placement: every copy becomes entries of the scene's own mappings. See copies.h.
  *
  * An entry of a copy has a name and a head of its own and shares all below with the part, so that a copy
- * costs little. Sizes are known before anything is copied: the copies of the first copy are counted all
- * the way down, and counts that are too large are refused at their number.
+ * costs little. The first copy tells how large all are, and counts that are too large are refused at their number.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -231,10 +230,11 @@ static void add_ports(strut_expansion *expansion, strut_copy *copy) {
 static void fill_copy(strut_expansion *expansion, strut_copy *copy) {
   strut_part *part = copy->placement->part;
   expansion->reader->scope = NULL;
-  if (!expansion->weighing) strut_copy_things(expansion, &part->fields, copy);
+  expansion->copies->things++;
+  strut_copy_things(expansion, &part->fields, copy);
   strut_read_merge(expansion, part->keys.merge, copy, STRUT_KEY_PART_MERGE);
   expand_places(expansion, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
-  if (!expansion->weighing) add_ports(expansion, copy);
+  add_ports(expansion, copy);
 }
 
 /* What ties a copy to the next one. */
@@ -310,11 +310,9 @@ static void link_all(strut_expansion *expansion, strut_placing *placing, strut_c
   }
 }
 
-/* Refuses what would become too large, before it is copied. */
-static bool check_size(strut_expansion *expansion, const strut_placing *placing, double copies,
-                       double each) {
-  double all = (double)expansion->copies->things + copies * each,
-         most = expansion->reader->limit_things;
+/* Refuses what would become too large. */
+static bool check_size(strut_expansion *expansion, const strut_placing *placing, double all) {
+  double most = expansion->reader->limit_things;
   if (all <= most) return true;
   strut_report_error(
       expansion->reader,
@@ -326,39 +324,33 @@ static bool check_size(strut_expansion *expansion, const strut_placing *placing,
   return false;
 }
 
-/* All copies; while weighing, the first one only, counted as many times. */
+/* All copies; the first one tells how large they all will be. */
 static void make_copies(strut_expansion *expansion, strut_placing *placing) {
   strut_reader *reader = expansion->reader;
   const strut_repetition *repetition = &placing->repeat;
   int64_t all = repetition->count[0] * repetition->count[1];
+  size_t before = expansion->copies->things, links = 0;
   strut_frame base = strut_frame_of_scene;
   if (!read_links(expansion, placing)) return;
-  if (expansion->weighing) {
-    const int64_t number[2] = {0, 0};
-    strut_copy *place, *copy = strut_make_copy(expansion, placing, number, &base, &place);
-    size_t before = expansion->copies->things,
-           own = strut_count_things(&placing->placement->part->fields) + 1;
-    if (copy) fill_copy(expansion, copy);
-    if (expansion->stopped) return;
-    double each = (double)(expansion->copies->things - before + own);
-    for (int d = 0; d < repetition->numbers; d++)
-      if (repetition->next[d]) each += (double)strut_count_things(&placing->next[d]);
-    expansion->copies->things = before;
-    if (check_size(expansion, placing, (double)all, each))
-      expansion->copies->things += (size_t)all * (size_t)each;
-    return;
-  }
+  for (int d = 0; d < repetition->numbers; d++)
+    if (repetition->next[d]) links += strut_count_things(&placing->next[d]);
+  double least = (double)strut_count_things(&placing->placement->part->fields) + 1.0;
+  if (!check_size(expansion, placing, (double)before + (double)all * least)) return;
   strut_copy **copies = strut_scratch_array(reader, (size_t)all, sizeof *copies);
   strut_copy **places = strut_scratch_array(reader, (size_t)all, sizeof *places);
   if (!copies || !places) return;
   for (int64_t n = 0; n < all && !expansion->stopped; n++) {
     const int64_t number[2] = {n / repetition->count[1], n % repetition->count[1]};
     copies[n] = strut_make_copy(expansion, placing, number, &base, &places[n]);
-    if (copies[n])
-      fill_copy(expansion, copies[n]);
-    else
-      expansion->copies->incomplete = true;
-    if (n == 0 && !check_size(expansion, placing, 1.0, 0.0)) return;
+    if (!copies[n] || (n == 0 && reader->failed)) expansion->copies->incomplete = true;
+    if (copies[n]) fill_copy(expansion, copies[n]);
+    double each = (double)(expansion->copies->things - before + links);
+    if (expansion->stopped) return;
+    if (n == 0 && !check_size(expansion, placing, (double)before + (double)all * each)) return;
+    if (n == 0 && expansion->copies->incomplete) { /* the others would say the same */
+      placing->placement->count[0] = placing->placement->count[1] = 1;
+      return;
+    }
     if (strut_diagnostics_full(reader->diagnostics)) expansion->stopped = true;
   }
   link_all(expansion, placing, copies, places);
@@ -449,15 +441,13 @@ static void expand_place(strut_expansion *expansion, const strut_tree *key, stru
   strut_placement *placement = p.placement;
   strut_part *part = placement->part;
   if (!enter_part(expansion, part, p.keys.part)) return;
-  if (!expansion->weighing) {
-    if (!strut_grow(&copies->placements, &copies->placement_capacity, copies->placement_count,
-                    sizeof *copies->placements)) {
-      reader->out_of_memory = expansion->stopped = true;
-      return;
-    }
-    copies->placements[copies->placement_count] = placement;
-    strut_add_name(reader, &copies->placement_names, placement->name, copies->placement_count++);
+  if (!strut_grow(&copies->placements, &copies->placement_capacity, copies->placement_count,
+                  sizeof *copies->placements)) {
+    reader->out_of_memory = expansion->stopped = true;
+    return;
   }
+  copies->placements[copies->placement_count] = placement;
+  strut_add_name(reader, &copies->placement_names, placement->name, copies->placement_count++);
   part->open = part->placed = true;
   make_copies(expansion, &p);
   part->open = false;
@@ -498,24 +488,14 @@ const char *strut_limit_hint(strut_reader *reader) {
                                   STRUT_MOST_THINGS);
 }
 
-/* Counts first, then copies. */
 static void expand_scene(strut_expansion *expansion) {
   strut_reader *reader = expansion->reader;
-  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
   const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
-  expansion->weighing = true;
-  expand_places(expansion, place, NULL);
-  if (expansion->stopped || reader->failed) {
-    expansion->copies->incomplete = true;
-    return;
-  }
-  expansion->weighing = false;
-  expansion->copies->things = 0;
   const strut_tree *own = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
   for (; own; own = own->next->next)
     if (own->next->kind == STRUT_TREE_LIST || strut_tree_find(own->next, "position", NULL))
       strut_remember_node(expansion, own); /* others are laid over copies */
-  expand_places(expansion, place, NULL);
+  expand_places(expansion, strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE), NULL);
   if (expansion->stopped) expansion->copies->incomplete = true;
 }
 
