@@ -162,16 +162,15 @@ static bool join_name(const char *prefix, const char *text, strut_full_name *ful
   return length >= 0 && (size_t)length < sizeof full->text;
 }
 
-/* What the next copy calls the node that this one calls `text`. */
-static const char *twisted(const strut_tree *twist, const char *text) {
-  const strut_tree *other = twist ? strut_tree_find(twist, text, NULL) : NULL;
+const char *strut_twisted(const strut_copy *link, const char *text) {
+  const strut_tree *other = link->twist ? strut_tree_find(link->twist, text, NULL) : NULL;
   return other && other->kind == STRUT_TREE_SCALAR ? other->text : text;
 }
 
 /* The name that `text` has in one scope alone. */
 static bool own_name(const strut_copy *scope, const char *text, strut_full_name *full) {
-  bool next = scope->kind == STRUT_SCOPE_LINK && strncmp(text, "next.", 5) == 0;
-  if (next) return join_name(scope->next->prefix, twisted(scope->twist, text + 5), full);
+  bool next = scope->next && strncmp(text, "next.", 5) == 0;
+  if (next) return join_name(scope->next->prefix, strut_twisted(scope, text + 5), full);
   return join_name(scope->prefix, text, full);
 }
 
@@ -309,6 +308,8 @@ const char *strut_copy_hint(strut_reader *reader, const strut_tree *value) {
   strut_full_name full;
   const strut_copy *scope = strut_scope_of(reader, value);
   bool within = scope && scope->kind != STRUT_SCOPE_PLACE;
+  if (within && scope != reader->scope && strncmp(value->text, "next.", 5) == 0)
+    return "; its names stand here without 'next.'";
   bool fits = within ? own_name(scope, value->text, &full) : join_name("", value->text, &full);
   return fits ? strut_copy_hint_of(reader, full.text) : "";
 }

@@ -69,10 +69,12 @@ struct strut_copy {
   strut_parameter_state *parameters;
   strut_part_list parts;
   strut_frame frame;
-  const strut_copy *next;  /* LINK */
+  strut_copy *next;        /* LINK; NULL of one that is only seen from outside */
   const strut_tree *twist; /* LINK that closes: {own: other}, or NULL */
 };
 
+/** What the next copy calls the node that the link's copy calls `text`. */
+const char *strut_twisted(const strut_copy *link, const char *text);
 /** The scope of a placed tree; else the reader's. */
 strut_copy *strut_scope_of(const strut_reader *reader, const strut_tree *tree);
 
@@ -111,10 +113,11 @@ void strut_read_parts(strut_reader *reader);
 /** Unites the nodes that `merge` names, once their positions are read. */
 void strut_merge_nodes(strut_reader *reader);
 
-/** Nodes that become one: by name in a scope, or all that touch within one. */
+/** Nodes that become one: by name, or all that touch within a scope. */
 typedef struct strut_merger {
   strut_copy *scope;
-  const strut_tree *a, *b; /* names; NULL: all that touch */
+  const strut_tree *a;     /* NULL: all that touch */
+  strut_placed_tree b;     /* in another scope, maybe */
   const strut_tree *place; /* of touching */
   struct strut_merger *next;
 } strut_merger;
@@ -215,9 +218,9 @@ void strut_remember_node(strut_expansion *expansion, const strut_tree *key);
 /** Copies all entries of the fields of a part, or of `next`, into a scope. */
 void strut_copy_things(strut_expansion *expansion, strut_fields *fields, strut_copy *scope);
 size_t strut_count_things(strut_fields *fields);
-/** Adds nodes to be merged: two names in a scope, or, with NULL, all that touch within it. */
-void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut_tree *first,
-                      const strut_tree *second, const strut_tree *place);
+/** Adds nodes to be merged: one of the scope with that of another, or, with NULL, all that touch within it. */
+void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut_tree *own,
+                      strut_copy *beyond, const strut_tree *other, const strut_tree *place);
 /** Reads `merge`: `touching`, or a mapping of names. */
 void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut_copy *scope,
                       int key);

@@ -85,11 +85,13 @@ size_t strut_count_things(strut_fields *fields) {
   return count;
 }
 
-void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut_tree *first,
-                      const strut_tree *second, const strut_tree *place) {
+void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut_tree *own,
+                      strut_copy *beyond, const strut_tree *other, const strut_tree *place) {
   strut_merger *merger = strut_scratch_array(expansion->reader, 1, sizeof *merger);
   if (!merger) return;
-  *merger = (strut_merger){.scope = scope, .a = first, .b = second, .place = place};
+  *merger = (strut_merger){.scope = scope, .a = own, .place = place};
+  if (other) merger->b = (strut_placed_tree){*other, beyond};
+  merger->b.tree.placed = true;
   if (!expansion->copies->mergers_end) expansion->copies->mergers_end = &expansion->copies->mergers;
   *expansion->copies->mergers_end = merger;
   expansion->copies->mergers_end = &merger->next;
@@ -100,7 +102,7 @@ void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut
   if (!value) return;
   expansion->reader->scope = scope; /* one message for all copies */
   if (value->kind == STRUT_TREE_SCALAR && strcmp(value->text, "touching") == 0)
-    strut_add_merger(expansion, scope, NULL, NULL, value);
+    strut_add_merger(expansion, scope, NULL, NULL, NULL, value);
   else if (value->kind != STRUT_TREE_MAP)
     strut_refuse_form(
         expansion->reader, key, value,
@@ -108,8 +110,12 @@ void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut
   for (const strut_tree *tree = value->kind == STRUT_TREE_MAP ? value->first : NULL; tree;
        tree = tree->next->next)
     if (strut_read_scalar(expansion->reader, tree->next, tree->text, (strut_owner){"'merge'", NULL},
-                          "the name of a node"))
-      strut_add_merger(expansion, scope, tree, tree->next, value);
+                          "the name of a node")) {
+      bool link = scope && scope->kind == STRUT_SCOPE_LINK;
+      strut_tree other = *tree->next;
+      if (link) other.text = strut_twisted(scope, other.text);
+      strut_add_merger(expansion, scope, tree, link ? scope->next : scope, &other, value);
+    }
   expansion->reader->scope = NULL;
 }
 

@@ -119,25 +119,8 @@ static void merge_named(merging *self, const strut_merger *merger) {
                        own && own->kind != STRUT_SCOPE_LINK ? own->placement->part->name : NULL};
   reader->scope = own;
   int32_t a = strut_read_reference(reader, merger->a, "merge", owner, STRUT_THING_NODE);
-  /* in `next`, the other name is one of the next copy */
-  strut_full_name full;
-  const strut_tree *b_name = merger->b;
-  int32_t b;
-  if (own && own->kind == STRUT_SCOPE_LINK && !merger->b->placed) {
-    strcpy(full.text, "next.");
-    strncat(full.text, merger->b->text, sizeof full.text - 6);
-    b = strut_find_thing(reader, STRUT_THING_NODE, NULL, full.text);
-    if (b < 0)
-      strut_report_error(
-          reader, merger->b->place,
-          strncmp(merger->b->text, "next.", 5) == 0
-              ? "unknown node '%s' of the next copy in 'merge': its names stand here "
-                "without 'next.'"
-              : "unknown node '%s' of the next copy in 'merge'",
-          strut_sanitised_text(reader, merger->b->text));
-  } else {
-    b = strut_read_reference(reader, b_name, "merge", owner, STRUT_THING_NODE);
-  }
+  if (own && own->kind == STRUT_SCOPE_LINK) owner.kind = "the next copy";
+  int32_t b = strut_read_reference(reader, &merger->b.tree, "merge", owner, STRUT_THING_NODE);
   if (a >= 0 && b >= 0) {
     double apart = distance(self, a, b);
     if (apart > SAME * self->size)

@@ -237,16 +237,22 @@ static void fill_copy(strut_expansion *expansion, strut_copy *copy) {
   add_ports(expansion, copy);
 }
 
+/* A copy as it is seen from outside. */
+static strut_copy *view_of(strut_expansion *expansion, const strut_copy *copy) {
+  strut_copy *view = new_scope(expansion, STRUT_SCOPE_LINK, copy->placement, copy->outer);
+  if (!view) return NULL;
+  view->prefix = copy->prefix, view->prefix_length = copy->prefix_length;
+  memcpy(view->number, copy->number, sizeof view->number);
+  view->frame = copy->frame;
+  return view;
+}
+
 /* What ties a copy to the next one. */
 static void link_copies(strut_expansion *expansion, strut_fields *next, strut_copy *place,
                         strut_copy *copy, const strut_copy *other, const strut_tree *twist) {
-  strut_copy *link = new_scope(expansion, STRUT_SCOPE_LINK, copy->placement, copy->outer);
-  if (!link) return;
-  link->home = place;
-  link->prefix = copy->prefix, link->prefix_length = copy->prefix_length;
-  memcpy(link->number, copy->number, sizeof link->number);
-  link->frame = copy->frame;
-  link->next = other, link->twist = twist;
+  strut_copy *link = view_of(expansion, copy), *next_view = view_of(expansion, other);
+  if (!link || !next_view) return;
+  link->home = place, link->next = next_view, link->twist = twist;
   strut_copy_things(expansion, next, link);
   strut_next_keys keys = {0};
   strut_store(expansion->reader, next, &keys);
@@ -355,22 +361,10 @@ static void make_copies(strut_expansion *expansion, strut_placing *placing) {
   }
   link_all(expansion, placing, copies, places);
   const strut_tree *tree = placing->keys.onto ? placing->keys.onto->first : NULL;
-  for (; tree && copies[0]; tree = tree->next->next) {
-    /* own names are the copy's, the others those of the scope around it */
-    strut_copy *link = new_scope(expansion, STRUT_SCOPE_LINK, placing->placement, placing->outer);
-    strut_copy *around = new_scope(expansion, STRUT_SCOPE_COPY, placing->placement, placing->outer);
-    if (!link || !around) return;
-    around->prefix = placing->outer ? placing->outer->prefix : "";
-    link->prefix = copies[0]->prefix, link->prefix_length = copies[0]->prefix_length;
-    link->next = around;
-    strut_placed_tree *other = strut_scratch_array(reader, 1, sizeof *other);
-    if (!other) return;
-    *other = (strut_placed_tree){*tree->next, link};
-    other->tree.placed = true;
-    other->tree.text = strut_scratch_text(reader, "next.%s", tree->next->text);
-    strut_add_merger(expansion, link, tree, &other->tree,
+  strut_copy *first = tree && copies[0] ? view_of(expansion, copies[0]) : NULL;
+  for (; tree && first; tree = tree->next->next)
+    strut_add_merger(expansion, first, tree, placing->outer, tree->next,
                      strut_slot_of(&placing->fields, STRUT_KEY_PLACE_ONTO)->key);
-  }
 }
 
 static bool enter_part(strut_expansion *expansion, const strut_part *part, const strut_tree *name) {
