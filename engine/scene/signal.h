@@ -68,7 +68,8 @@ typedef struct strut_relay {
  * and after stop.
  */
 typedef struct strut_signal {
-  const char *name; /* as the file calls it, or NULL */
+  const char *name;  /* as the file calls it, or NULL: then */
+  const char *owner; /* how messages call it, "the signal of actuator 'd'"; or NULL */
   strut_signal_kind kind;
   double amplitude;     /* [m], [N] or [1] */
   double frequency;     /* [Hz], > 0 for sine, half-sine, square */

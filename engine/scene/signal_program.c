@@ -318,44 +318,39 @@ static double turns_of_state(const strut_internal_state *state) {
   return angle && first->operation == STRUT_OPERATION_NUMBER ? first->number / STRUT_TAU : 0.0;
 }
 
-/* Notes signals that no name tells from others by what they drive. */
 static void note_user(const strut_scene *scene, double last, bool stops, int32_t signal,
-                      const char *kind, const char *name, strut_turning *fastest) {
+                      strut_turning *fastest) {
   if (signal < 0) return;
   const strut_signal *s = &scene->signals[signal];
-  double rate = turns_of_signal(scene, s, last, stops);
-  note_turn(fastest, rate, s->name ? "signal" : kind, s->name ? s->name : name);
+  const char *kind = s->name ? "signal" : s->owner ? s->owner : "a signal";
+  note_turn(fastest, turns_of_signal(scene, s, last, stops), kind, s->name);
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    note_user(scene, last, stops, s->terms[i], kind, name, fastest);
+    note_user(scene, last, stops, s->terms[i], fastest);
   for (size_t i = 0; strut_signal_has_program(s) && i < s->program.length; i++) {
     const strut_instruction *instruction = &s->program.instruction[i];
     if (instruction->operation == STRUT_OPERATION_COLUMN &&
         instruction->column.kind == STRUT_COLUMN_SIGNAL)
-      note_user(scene, last, stops, instruction->column.item, kind, name, fastest);
+      note_user(scene, last, stops, instruction->column.item, fastest);
   }
 }
 
 strut_turning strut_scene_fastest_turn(const strut_scene *scene, double last, bool stops) {
   strut_turning fastest = {.rate = 0.0};
   for (size_t i = 0; i < scene->actuator_count; i++)
-    note_user(scene, last, stops, scene->actuators[i].signal, "the drive of actuator",
-              scene->actuators[i].name, &fastest);
+    note_user(scene, last, stops, scene->actuators[i].signal, &fastest);
   for (size_t i = 0; i < scene->load_count; i++)
-    note_user(scene, last, stops, scene->loads[i].signal, "load", scene->loads[i].name, &fastest);
+    note_user(scene, last, stops, scene->loads[i].signal, &fastest);
   for (size_t i = 0; i < scene->support_motion_count; i++)
-    note_user(scene, last, stops, scene->support_motions[i].signal, "the moving node",
-              scene->nodes[scene->support_motions[i].node].name, &fastest);
+    note_user(scene, last, stops, scene->support_motions[i].signal, &fastest);
   for (size_t i = 0; i < scene->sliding_count; i++)
-    note_user(scene, last, stops, scene->sliding_masses[i].signal, "sliding mass",
-              scene->sliding_masses[i].name, &fastest);
+    note_user(scene, last, stops, scene->sliding_masses[i].signal, &fastest);
   for (size_t i = 0; i < scene->ground_count; i++)
     for (int c = 0; c < 2; c++)
       if (scene->grounds[i].moves[c])
-        note_user(scene, last, stops, scene->grounds[i].motion[c], "the moving ground", NULL,
-                  &fastest);
+        note_user(scene, last, stops, scene->grounds[i].motion[c], &fastest);
   for (size_t i = 0; i < scene->contact_count; i++)
     if (scene->contacts[i].friction.driven)
-      note_user(scene, last, stops, scene->contacts[i].friction.signal, "friction", NULL, &fastest);
+      note_user(scene, last, stops, scene->contacts[i].friction.signal, &fastest);
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     const strut_unbalance *unbalance = &scene->unbalances[i];
     note_turn(&fastest, unbalance->speed / STRUT_TAU, "unbalance", unbalance->name);

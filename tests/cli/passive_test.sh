@@ -67,10 +67,10 @@ solver: {step: 1 ms}
 run: {duration: 0.2 s}
 strut: 1'
 turning "unbalance 'rotor'" "unbalances: {rotor: {node: b, mass: 2 g, radius: 3 mm, speed: HERTZ}}"
-turning "load 'l'" "loads: {l: {node: b, force: [1, 0], signal: {sine: {amplitude: 1, frequency: HERTZ}}}}"
+turning "the signal of load 'l'" "loads: {l: {node: b, force: [1, 0], signal: {sine: {amplitude: 1, frequency: HERTZ}}}}"
 plain="rk4 verlet euler" # methods with events look within their steps for what expressions of time do
-turning "the drive of actuator 'd'" "actuators: {d: {member: m, signal: {expression: '1 mm * sin(2*pi*HERTZ*t)'}}}" "$plain"
-turning "load 'l'" "loads: {l: {node: b, force: [1, 0], signal: {expression: 't*HERTZ - floor(t*HERTZ)'}}}" "$plain"
+turning "the signal of actuator 'd'" "actuators: {d: {member: m, signal: {expression: '1 mm * sin(2*pi*HERTZ*t)'}}}" "$plain"
+turning "the signal of load 'l'" "loads: {l: {node: b, force: [1, 0], signal: {expression: 't*HERTZ - floor(t*HERTZ)'}}}" "$plain"
 turning "signal 's'" "signals: {part: {sine: {amplitude: 1 mm, frequency: HERTZ}}, s: {sine: {amplitude: 1 mm, frequency: HERTZ, phase: 0.1}}}
 actuators: {d: {member: m, signal: s}}"
 turning "oscillator 'o'" "oscillators: {o: {frequency: HERTZ}}
@@ -83,7 +83,7 @@ END
 gives .velocity 0 1e-8 run rotor.yaml --accuracy 1%
 body=$(echo "$body" | sed 's/^nodes: {/nodes: {c: {position: [0.2, 0], fixed: both, moves: {x: {sine: {amplitude: 1 mm, frequency: HERTZ}}}}, /
 s/^members: {/members: {n: {kind: spring, nodes: [b, c], stiffness: 1000}, /')
-turning "the moving node 'c'" ""
+turning "the signal of node 'c'" ""
 
 # ---- gas that flows too fast for the step ----
 yaml pipe.yaml <<'END'

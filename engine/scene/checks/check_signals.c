@@ -351,61 +351,21 @@ static void check_jumps(strut_checker *checker) {
               sampled ? "a longer 'every'" : "a lower frequency", step ? " or a smaller step" : "");
 }
 
-/* Begins with a signal, by a name for messages: its own, or that of its first user. */
-static void call_signal(strut_checker *checker, const size_t *user, size_t i) {
-  const strut_scene *scene = checker->scene;
-  char thing[200];
-  size_t u = user[i];
+static void begin_with_signal(strut_checker *checker, size_t i) {
+  const strut_signal *signal = &checker->scene->signals[i];
   strut_check_begin(checker, STRUT_THING_SIGNAL, i);
-  if (scene->signals[i].name || !u) return;
-  size_t drives = scene->actuator_count + scene->load_count;
-  if (u > drives) {
-    int32_t node = scene->support_motions[u - 1 - drives].node;
-    strut_format_name(thing, "node", scene->nodes[node].name, (size_t)node);
-    snprintf(checker->owner, 200, "the signal of %.180s", thing);
-    return;
-  }
-  bool actuator = u <= scene->actuator_count;
-  size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
-  strut_format_name(thing, actuator ? "actuator" : "load",
-                    actuator ? scene->actuators[index].name : scene->loads[index].name, index);
-  snprintf(checker->owner, 200, "the signal of %.180s", thing);
-}
-
-/*
- * Finds for each signal 1 + the number of the actuator that uses it, loads and moving supports counted
- * on; 0: none.
- */
-static void find_users(const strut_scene *scene, size_t *user) {
-  for (size_t i = scene->support_motion_count; i-- > 0;) {
-    const strut_support_motion *motion = &scene->support_motions[i];
-    if (strut_exists(motion->signal, scene->signal_count) &&
-        strut_exists(motion->node, scene->node_count))
-      user[motion->signal] = 1 + scene->actuator_count + scene->load_count + i;
-  }
-  for (size_t i = scene->load_count; i-- > 0;)
-    if (strut_exists(scene->loads[i].signal, scene->signal_count))
-      user[scene->loads[i].signal] = 1 + scene->actuator_count + i;
-  for (size_t i = scene->actuator_count; i-- > 0;)
-    if (strut_exists(scene->actuators[i].signal, scene->signal_count))
-      user[scene->actuators[i].signal] = 1 + i;
-  for (size_t i = scene->signal_count; i-- > 0;) /* terms precede their sum */
-    for (size_t t = 0; t < part_count(&scene->signals[i]); t++) {
-      int32_t term = part_of(&scene->signals[i], t);
-      if (strut_exists(term, i) && !user[term]) user[term] = user[i];
-    }
+  if (!signal->name && signal->owner)
+    snprintf(checker->owner, sizeof checker->owner, "%s", signal->owner);
 }
 
 void strut_check_signals(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   uint32_t *size = strut_allocate(scene->signal_count, sizeof *size);
   uint32_t *depth = strut_allocate(scene->signal_count, sizeof *depth);
-  size_t *user = strut_allocate(scene->signal_count, sizeof *user);
-  if (!size || !depth || !user) checker->out_of_memory = true;
-  if (!checker->out_of_memory) find_users(scene, user);
+  if (!size || !depth) checker->out_of_memory = true;
   for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++) {
     const strut_signal *signal = &scene->signals[i];
-    call_signal(checker, user, i);
+    begin_with_signal(checker, i);
     size[i] = depth[i] = 1;
     if ((unsigned)signal->kind >= STRUT_SIGNAL_KINDS) {
       strut_fault(checker, NULL, "is of an unknown kind");
@@ -422,10 +382,9 @@ void strut_check_signals(strut_checker *checker) {
   }
   for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++)
     if (scene->signals[i].kind == STRUT_DATA && !checker->wild[i]) {
-      call_signal(checker, user, i);
+      begin_with_signal(checker, i);
       check_data(checker);
     }
   strut_release(size);
   strut_release(depth);
-  strut_release(user);
 }

@@ -202,6 +202,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   else
     fine = read_wave(reader, strut_wave_section(signal.kind), value, owner, &m, &signal) && fine;
   if (m.expected) m.bare = false, m.dimension = *m.expected;
+  signal.owner = strut_keep_text(reader, strut_owner_text(reader, owner));
   return fine ? add_signal(reader, &signal, &m, value) : -1;
 }
 
