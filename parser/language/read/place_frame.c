@@ -182,112 +182,39 @@ static bool read_position(strut_reader *reader, const strut_tree *value, double 
                                STRUT_DIM_LENGTH, position);
 }
 
-/* Where a node of the placement's scope lies, in the coordinates of that scope. */
-static bool find_outside(strut_expansion *expansion, strut_copy *outer, const strut_tree *name,
-                         double position[2]) {
+static bool refuse_node(strut_reader *reader, const strut_copy *copy, const strut_tree *name) {
+  const char *text = strut_sanitised_text(reader, name->text);
+  return copy ? strut_report_error(reader, name->place,
+                                   "part '%s' has no node '%s' that can be laid onto others",
+                                   copy->placement->part->name, text)
+              : strut_report_error(
+                    reader, name->place,
+                    "unknown node '%s' in 'onto'; it names a node of what is placed before", text);
+}
+
+/* Where a node of a scope (NULL: the scene) lies, in the coordinates of that scope; `copy`: whose own it is, or NULL. */
+static bool find_position(strut_expansion *expansion, strut_copy *scope, const strut_copy *copy,
+                          const strut_tree *name, double position[2]) {
   strut_reader *reader = expansion->reader;
   strut_full_name full, resolved;
-  snprintf(full.text, sizeof full.text, "%s%s", outer ? outer->prefix : "", name->text);
+  snprintf(full.text, sizeof full.text, "%s%s", scope ? scope->prefix : "", name->text);
   int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
                   ? strut_name_map_find(&expansion->copies->node_entries, resolved.text)
                   : -1;
-  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text))
-    return strut_report_error(
-        reader, name->place,
-        "unknown node '%s' in 'onto'; it names a node of what is placed before",
-        strut_sanitised_text(reader, name->text));
+  if (i < 0 || strut_name_is_hidden(reader, scope, resolved.text))
+    return refuse_node(reader, copy, name);
   const strut_tree *key = expansion->copies->nodes[i];
   strut_copy *before = strut_enter_scope(reader, key);
   bool fine = read_position(reader, key->next, position);
   strut_place_point(reader, key->next, position);
   reader->scope = before;
-  if (!fine || !outer) return fine;
+  if (!fine || !scope) return fine;
   /* back into the frame of the scope */
-  const strut_frame *frame = &outer->frame;
+  const strut_frame *frame = &scope->frame;
   double d[2] = {position[0] - frame->at[0], position[1] - frame->at[1]};
   for (int c = 0; c < 2; c++)
     position[c] = (frame->axes[0][c] * d[0] + frame->axes[1][c] * d[1]) / frame->scale;
   return true;
-}
-
-/* The position of an entry of nodes in the part of a copy, moved by its frame. */
-static bool node_position(strut_expansion *expansion, strut_copy *copy, const strut_tree *value,
-                          double position[2]) {
-  strut_copy *before = expansion->reader->scope;
-  expansion->reader->scope = copy;
-  bool fine = read_position(expansion->reader, value, position);
-  expansion->reader->scope = before;
-  strut_frame_point(&copy->frame, position);
-  return fine;
-}
-
-/* The numbers behind a placement's name in "r.3.a" or "r.last.a", and what follows; NULL: none such. */
-static const char *read_copy_numbers(const strut_repetition *repetition, const char *text,
-                                     int64_t number[2]) {
-  for (int n = 0; n < repetition->numbers; n++) {
-    size_t length = strspn(text, "0123456789");
-    bool last = !length && strncmp(text, "last.", 5) == 0;
-    if (last) length = 4;
-    if (length < 1 || length > 9 || text[length] != '.') return NULL;
-    number[n] = last ? repetition->count[n] - 1 : 0;
-    for (size_t c = 0; !last && c < length; c++) number[n] = 10 * number[n] + (text[c] - '0');
-    if (number[n] >= repetition->count[n]) return NULL;
-    text += length + 1;
-  }
-  return text;
-}
-
-/*
- * Where the node of a copy lies that `name` means, one of a part placed within it too, in the coordinates that the
- * copy's frame leads to. False: it has no such node, or a part on the way is laid onto others.
- */
-static bool find_in_copy(strut_expansion *expansion, strut_copy *copy, const char *name,
-                         double position[2]) {
-  strut_part *part = copy->placement->part;
-  const strut_slot *nodes = strut_slot_of(&part->fields, STRUT_KEY_PART_NODES);
-  const strut_slot *place = strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE);
-  const strut_tree *ports = part->keys.ports;
-  const strut_tree *port = ports ? strut_tree_find(ports, name, NULL) : NULL;
-  if (port && port->kind == STRUT_TREE_SCALAR) name = port->text;
-  const strut_tree *value =
-      nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, name, NULL) : NULL;
-  if (value) return node_position(expansion, copy, value, position);
-  const strut_tree *tree = place->state == STRUT_GIVEN ? place->value->first : NULL;
-  for (; tree; tree = tree->next->next) {
-    size_t length = strlen(tree->text);
-    int64_t number[2] = {0, 0}, first[2] = {0, 0};
-    strut_placing p;
-    strut_frame base = strut_frame_of_scene;
-    if (strncmp(tree->text, name, length) != 0 || name[length] != '.') continue;
-    if (expansion->copies->depth >= STRUT_DEEPEST_PARTS ||
-        !strut_read_placement(expansion, tree, copy, &p))
-      return false;
-    const char *rest = read_copy_numbers(&p.repeat, name + length + 1, number);
-    if (!rest || p.keys.onto) return false;
-    strut_copy *scope, *inner = strut_make_copy(expansion, &p, first, &base, &scope);
-    if (inner && (number[0] || number[1]))
-      inner = strut_make_copy(expansion, &p, number, &base, &scope);
-    if (!inner) return false;
-    expansion->copies->depth++;
-    bool found = find_in_copy(expansion, inner, rest, position);
-    expansion->copies->depth--;
-    return found;
-  }
-  return false;
-}
-
-/* The position of a node of the copy itself; its frame is that of the scene as yet. */
-static bool find_inside(strut_expansion *expansion, strut_copy *copy, const strut_tree *name,
-                        double position[2]) {
-  strut_copy *before = expansion->reader->scope;
-  bool failed = expansion->reader->failed,
-       found = find_in_copy(expansion, copy, name->text, position);
-  expansion->reader->scope = before;
-  if (!found && expansion->reader->failed == failed)
-    strut_report_error(
-        expansion->reader, name->place, "part '%s' has no node '%s' that can be laid onto others",
-        copy->placement->part->name, strut_sanitised_text(expansion->reader, name->text));
-  return found;
 }
 
 /* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */
@@ -303,8 +230,8 @@ static bool lay_onto(strut_expansion *expansion, strut_copy *copy, const strut_t
   for (unsigned n = 0; n < map->count; n++, tree = tree->next->next) {
     if (!strut_read_scalar(reader, tree->next, "onto", (strut_owner){"a placement", NULL},
                            "the name of a node") ||
-        !find_inside(expansion, copy, tree, own[n]) ||
-        !find_outside(expansion, copy->outer, tree->next, there[n]))
+        !find_position(expansion, copy, copy, tree, own[n]) ||
+        !find_position(expansion, copy->outer, NULL, tree->next, there[n]))
       return false;
     own[n][0] *= frame->scale, own[n][1] *= frame->scale;
     strut_frame_vector(frame, own[n]);

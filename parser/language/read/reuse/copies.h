@@ -68,9 +68,11 @@ struct strut_copy {
   size_t parameter_count;
   strut_parameter_state *parameters;
   strut_part_list parts;
-  strut_frame frame;
-  strut_copy *next;        /* LINK; NULL of one that is only seen from outside */
-  const strut_tree *twist; /* LINK that closes: {own: other}, or NULL */
+  strut_frame frame;            /* to the scene, */
+  strut_frame within;           /* and to the scope around it, as far as it is known */
+  struct strut_copy *made_next; /* the scope that was made after it */
+  strut_copy *next;             /* LINK; NULL of one that is only seen from outside */
+  const strut_tree *twist;      /* LINK that closes: {own: other}, or NULL */
 };
 
 /** What the next copy calls the node that the link's copy calls `text`. */
@@ -175,6 +177,7 @@ typedef struct strut_expansion {
   strut_entry_list list[STRUT_MOST_KEYS]; /* of the keys of the scene */
   strut_entry_list contacts;
   bool stopped;
+  strut_copy *latest; /* the scope that was made last */
 } strut_expansion;
 
 typedef struct strut_repetition {
@@ -194,16 +197,6 @@ typedef struct strut_placing {
   strut_fields next[2]; /* of `repeat`, in each direction that it gives */
   bool varies;          /* some key mentions the copy's number */
 } strut_placing;
-
-/** The keys of a placement. False: it cannot be copied, which was reported. */
-bool strut_read_placement(strut_expansion *expansion, const strut_tree *key, strut_copy *outer,
-                          strut_placing *placing);
-/**
- * The scopes of one copy, and what it holds. *base is the frame of the first copy, which is made before
- * others; *place_scope that of the placement's keys. NULL: it could not be made.
- */
-strut_copy *strut_make_copy(strut_expansion *expansion, strut_placing *placing,
-                            const int64_t number[2], strut_frame *base, strut_copy **place_scope);
 
 /* place_frame.c */
 

@@ -70,8 +70,10 @@ static strut_copy *new_scope(strut_expansion *expansion, strut_scope_kind kind,
                        .outer = outer,
                        .home = outer,
                        .prefix = "",
-                       .frame = strut_frame_of_scene};
-  return copy;
+                       .frame = strut_frame_of_scene,
+                       .within = strut_frame_of_scene};
+  if (expansion->latest) expansion->latest->made_next = copy;
+  return expansion->latest = copy;
 }
 
 /* "cell.3." */
@@ -152,8 +154,9 @@ static bool mentions_number(const strut_tree *tree) {
 
 static void expand_places(strut_expansion *expansion, const strut_slot *place, strut_copy *outer);
 
-strut_copy *strut_make_copy(strut_expansion *expansion, strut_placing *placing,
-                            const int64_t number[2], strut_frame *base, strut_copy **place_scope) {
+/* The scopes of one copy; *place_scope is that of the placement's keys. NULL: it could not be made. */
+static strut_copy *make_copy(strut_expansion *expansion, strut_placing *placing,
+                             const int64_t number[2], strut_copy **place_scope) {
   strut_reader *reader = expansion->reader;
   strut_part *part = placing->placement->part;
   strut_copy *place = new_scope(expansion, STRUT_SCOPE_PLACE, placing->placement, placing->outer);
@@ -179,13 +182,28 @@ strut_copy *strut_make_copy(strut_expansion *expansion, strut_placing *placing,
   }
   bool fine =
       read_copy_parameters(reader, copy, place, placing->keys.set) && !placing->fields.broken;
-  if (fine && (first || placing->varies)) fine = strut_read_frame(expansion, placing, copy, base);
-  if (!fine) return NULL;
-  strut_frame repeated = strut_repeated_frame(&placing->repeat, number);
-  copy->frame = strut_frame_within(base, &repeated);
-  if (placing->outer) copy->frame = strut_frame_within(&placing->outer->frame, &copy->frame);
   reader->scope = NULL;
-  return copy;
+  return fine ? copy : NULL;
+}
+
+/* Sets the frames of a copy and of all scopes that were made for what it holds. */
+static void set_frames(strut_copy *copy) {
+  for (strut_copy *scope = copy; scope; scope = scope->made_next)
+    scope->frame =
+        scope->outer ? strut_frame_within(&scope->outer->frame, &scope->within) : scope->within;
+}
+
+/* Lays the copy where its keys and numbers say; *base is the frame of copy 0. False: that was reported. */
+static bool lay_copy(strut_expansion *expansion, strut_placing *placing, strut_copy *copy,
+                     strut_copy *place, strut_frame *base) {
+  bool first = copy->number[0] == 0 && copy->number[1] == 0, fine = true;
+  expansion->reader->scope = place;
+  if (first || placing->varies) fine = strut_read_frame(expansion, placing, copy, base);
+  expansion->reader->scope = NULL;
+  strut_frame repeated = strut_repeated_frame(&placing->repeat, copy->number);
+  copy->within = strut_frame_within(base, &repeated);
+  if (fine) set_frames(copy);
+  return fine;
 }
 
 /* Lets `onto` find the node of a port. */
@@ -243,7 +261,7 @@ static strut_copy *view_of(strut_expansion *expansion, const strut_copy *copy) {
   if (!view) return NULL;
   view->prefix = copy->prefix, view->prefix_length = copy->prefix_length;
   memcpy(view->number, copy->number, sizeof view->number);
-  view->frame = copy->frame;
+  view->frame = copy->frame, view->within = copy->within;
   return view;
 }
 
@@ -347,9 +365,16 @@ static void make_copies(strut_expansion *expansion, strut_placing *placing) {
   if (!copies || !places) return;
   for (int64_t n = 0; n < all && !expansion->stopped; n++) {
     const int64_t number[2] = {n / repetition->count[1], n % repetition->count[1]};
-    copies[n] = strut_make_copy(expansion, placing, number, &base, &places[n]);
-    if (!copies[n] || (n == 0 && reader->failed)) expansion->copies->incomplete = true;
-    if (copies[n]) fill_copy(expansion, copies[n]);
+    strut_copy *copy = make_copy(expansion, placing, number, &places[n]);
+    bool onto = placing->keys.onto && (n == 0 || placing->varies); /* by the nodes that it has */
+    if (copy && !onto && !lay_copy(expansion, placing, copy, places[n], &base)) copy = NULL;
+    if (!copy || (n == 0 && reader->failed)) expansion->copies->incomplete = true;
+    if (copy) fill_copy(expansion, copy);
+    if (copy && onto && !lay_copy(expansion, placing, copy, places[n], &base)) {
+      expansion->copies->incomplete = true;
+      copy = NULL;
+    }
+    copies[n] = copy;
     double each = (double)(expansion->copies->things - before + links);
     if (expansion->stopped) return;
     if (n == 0 && !check_size(expansion, placing, (double)before + (double)all * each)) return;
@@ -394,8 +419,8 @@ static int count_numbers(const strut_tree *place) {
   return count->kind == STRUT_TREE_LIST ? 2 : 1;
 }
 
-bool strut_read_placement(strut_expansion *expansion, const strut_tree *key, strut_copy *outer,
-                          strut_placing *placing) {
+static bool read_placement(strut_expansion *expansion, const strut_tree *key, strut_copy *outer,
+                           strut_placing *placing) {
   strut_reader *reader = expansion->reader;
   strut_owner owner = {"place", key->text};
   strut_placement *placement = strut_scratch_array(reader, 1, sizeof *placement);
@@ -431,7 +456,7 @@ static void expand_place(strut_expansion *expansion, const strut_tree *key, stru
   strut_reader *reader = expansion->reader;
   struct strut_copies *copies = expansion->copies;
   strut_placing p;
-  if (!strut_read_placement(expansion, key, outer, &p)) return;
+  if (!read_placement(expansion, key, outer, &p)) return;
   strut_placement *placement = p.placement;
   strut_part *part = placement->part;
   if (!enter_part(expansion, part, p.keys.part)) return;
