@@ -201,7 +201,7 @@ static bool find_position(strut_expansion *expansion, strut_copy *scope, const s
   int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
                   ? strut_name_map_find(&expansion->copies->node_entries, resolved.text)
                   : -1;
-  if (i < 0 || strut_name_is_hidden(reader, scope, resolved.text))
+  if (i < 0 || strut_name_hidden_by(reader, scope, resolved.text))
     return refuse_node(reader, copy, name);
   const strut_tree *key = expansion->copies->nodes[i];
   strut_copy *before = strut_enter_scope(reader, key);

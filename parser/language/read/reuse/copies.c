@@ -196,7 +196,8 @@ static int32_t find_resolved(const strut_reader *reader, const strut_name_map *m
   return strut_name_resolve_last(reader, name, &full) ? strut_name_map_find(map, full.text) : -1;
 }
 
-bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name) {
+const strut_copy *strut_name_hidden_by(const strut_reader *reader, const strut_copy *scope,
+                                       const char *name) {
   const struct strut_copies *copies = reader->copies;
   strut_full_name prefix;
   const char *around = !scope                            ? ""
@@ -210,10 +211,10 @@ bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, c
     prefix.text[length] = '\0';
     int32_t i = strut_name_map_find(&copies->ported, prefix.text);
     if (i < 0) continue;
-    const strut_tree *ports = copies->ported_copies[i]->placement->part->keys.ports;
-    return !strut_tree_find(ports, dot + 1, NULL);
+    const strut_copy *copy = copies->ported_copies[i];
+    return strut_tree_find(copy->placement->part->keys.ports, dot + 1, NULL) ? NULL : copy;
   }
-  return false;
+  return NULL;
 }
 
 /* The index of a full name, as far as the scope may see it. */
@@ -225,7 +226,7 @@ static int32_t find_seen(const strut_reader *reader, const strut_name_map *map,
       !reader->copies->ported_count)
     return index;
   return strut_name_resolve_last(reader, name, &full) &&
-                 strut_name_is_hidden(reader, scope, full.text)
+                 strut_name_hidden_by(reader, scope, full.text)
              ? -1
              : index;
 }
@@ -260,12 +261,8 @@ const char *strut_hiding_part(const strut_reader *reader, const strut_tree *valu
   if (!strut_name_resolve_last(reader, full.text, &resolved) ||
       find_resolved(reader, &reader->things[STRUT_THING_NODE].names, resolved.text) < 0)
     return NULL;
-  for (size_t i = 0; i < reader->copies->ported_count; i++) {
-    const strut_copy *copy = reader->copies->ported_copies[i];
-    if (strncmp(resolved.text, copy->prefix, copy->prefix_length) == 0)
-      return copy->placement->part->name;
-  }
-  return NULL;
+  const strut_copy *hiding = strut_name_hidden_by(reader, scope, resolved.text);
+  return hiding ? hiding->placement->part->name : NULL;
 }
 
 /* "; 'cell' has the copies 0 to 2" for `number` beyond them. */

@@ -64,7 +64,8 @@ struct strut_copy {
   const char *prefix; /* "cell.3." */
   size_t prefix_length;
   int64_t number[2];
-  int numbers; /* PLACE: how many of them are known */
+  int numbers;                 /* PLACE: how many of them are known */
+  size_t node_begin, node_end; /* of its own among the entries of nodes */
   size_t parameter_count;
   strut_parameter_state *parameters;
   strut_part_list parts;
@@ -87,8 +88,9 @@ typedef struct strut_full_name {
 } strut_full_name;
 
 const strut_placement *strut_placement_find(const strut_reader *reader, const char *name);
-/** Does a full name lead past the ports of a copy that is not around the scope? */
-bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name);
+/** The copy past whose ports a full name leads, where that is not around the scope; or NULL. */
+const strut_copy *strut_name_hidden_by(const strut_reader *reader, const strut_copy *scope,
+                                       const char *name);
 /** Does a value name a thing of the structure from within a part, which knows its own things only? */
 bool strut_within_part(const strut_reader *reader, const strut_tree *value,
                        const strut_name_map *map);

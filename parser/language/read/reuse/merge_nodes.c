@@ -17,12 +17,6 @@
 /* Over the size of the structure; NEAR also less than PART_OF_SPACING of the nodes' spacing in a row. */
 static const double SAME = 1e-9, NEAR = 1e-4, PART_OF_SPACING = 0.01;
 
-/* A node by its name, of which those of one copy stand together. */
-typedef struct named_node {
-  const char *name;
-  int32_t node;
-} named_node;
-
 typedef struct merging {
   strut_reader *reader;
   int32_t near[2]; /* the first two that nearly touch */
@@ -30,7 +24,6 @@ typedef struct merging {
   size_t count;
   int32_t *root; /* (count) an earlier node of its set, or itself */
   double size;
-  struct named_node *by_name; /* (count) sorted, once a part merges what touches */
 } merging;
 
 static int32_t find_root(merging *self, int32_t i) {
@@ -162,34 +155,6 @@ static size_t lower_bound(const grid_node *grid, size_t count, int64_t x, int64_
   return low;
 }
 
-static int compare_names(const void *first, const void *second) {
-  return strcmp(((const named_node *)first)->name, ((const named_node *)second)->name);
-}
-
-static bool sort_names(merging *self) {
-  if (self->by_name) return true;
-  self->by_name = strut_scratch_array(self->reader, self->count, sizeof *self->by_name);
-  for (size_t i = 0; self->by_name && i < self->count; i++)
-    self->by_name[i] = (named_node){self->reader->scene->nodes[i].name, (int32_t)i};
-  if (self->by_name) qsort(self->by_name, self->count, sizeof *self->by_name, compare_names);
-  return self->by_name != NULL;
-}
-
-/* The nodes of a copy among the sorted names; of the scene, all. */
-static size_t find_own_nodes(const merging *self, const strut_copy *scope, size_t *first) {
-  size_t low = 0, high = self->count, size = scope->prefix_length;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (strncmp(self->by_name[middle].name, scope->prefix, size) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  *first = low;
-  while (high < self->count && strncmp(self->by_name[high].name, scope->prefix, size) == 0) high++;
-  return high - low;
-}
-
 static double near_distance(const merging *self) {
   double near = fmin(NEAR, PART_OF_SPACING / (double)self->count);
   return fmax(near, SAME) * self->size;
@@ -218,17 +183,18 @@ static void merge_touching(merging *self, const strut_merger *merger) {
   strut_reader *reader = self->reader;
   double width = near_distance(self);
   self->near_count = 0;
-  size_t count = 0;
-  size_t first = 0, all = self->count;
-  if (merger->scope && !sort_names(self)) return;
-  if (merger->scope) all = find_own_nodes(self, merger->scope, &first);
+  const strut_copy *own = merger->scope;
+  size_t count = 0, all = own ? own->node_end - own->node_begin : self->count;
   grid_node *grid = strut_allocate(all, sizeof *grid);
   if (!grid) {
     reader->out_of_memory = true;
     return;
   }
   for (size_t k = 0; k < all && width > 0.0; k++) {
-    int32_t i = merger->scope ? self->by_name[first + k].node : (int32_t)k;
+    int32_t i = own ? strut_name_map_find(&reader->things[STRUT_THING_NODE].names,
+                                          reader->copies->nodes[own->node_begin + k]->text)
+                    : (int32_t)k;
+    if (i < 0) continue; /* the scene removes it */
     const double *at = reader->scene->nodes[i].position;
     if (!isfinite(at[0] + at[1])) continue;
     grid[count++] = (grid_node){(int64_t)floor(at[0] / width), (int64_t)floor(at[1] / width), i};

@@ -249,9 +249,11 @@ static void fill_copy(strut_expansion *expansion, strut_copy *copy) {
   strut_part *part = copy->placement->part;
   expansion->reader->scope = NULL;
   expansion->copies->things++;
+  copy->node_begin = expansion->copies->node_count;
   strut_copy_things(expansion, &part->fields, copy);
   strut_read_merge(expansion, part->keys.merge, copy, STRUT_KEY_PART_MERGE);
   expand_places(expansion, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
+  copy->node_end = expansion->copies->node_count;
   add_ports(expansion, copy);
 }
 
@@ -262,6 +264,7 @@ static strut_copy *view_of(strut_expansion *expansion, const strut_copy *copy) {
   view->prefix = copy->prefix, view->prefix_length = copy->prefix_length;
   memcpy(view->number, copy->number, sizeof view->number);
   view->frame = copy->frame, view->within = copy->within;
+  view->node_begin = copy->node_begin, view->node_end = copy->node_end;
   return view;
 }
 
