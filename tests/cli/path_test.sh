@@ -34,6 +34,7 @@ shows 0 "stable" path arch.yaml --load weight --until -3
 # A load that nothing resists, one that is not there, one that does nothing.
 tells 1 "unknown load 'wait'; the scene's loads are: weight, wind" path arch.yaml --load wait
 tells 1 "the load wind is zero; there is no path to follow" path arch.yaml --load wind
+edit 's/\[0, 0.3\]/{position: [0, 0.3], fixed: y}/' arch.yaml tells 1 "acts on nothing that can move" path --load weight
 tells 1 "--until expects" path arch.yaml --until "3 N"
 tells 1 "a whole number from 1 to" path arch.yaml --steps 0
 sed '/right: {pos/s/, fixed: both//; s/left: {position: \[-1, 0\], fixed: both}/left: [-1, 0]/' arch.yaml >loose.yaml
@@ -120,6 +121,36 @@ for over in "--over reel --until -0.5" "--over L --until 0.5"; do
 done
 expect 0 path reel.yaml --over reel --until "-1.5 m" --json
 holds '.end == "invalid" and (.remark | contains("rest length of rope would reach zero"))'
+
+# A rope of four cables begins straight or slack, where it has no stiffness: no bifurcations, and string polygons.
+yaml rope.yaml <<'END'
+parameters: {rest: 1, drawn: 0}
+nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0], c: [2, drawn], d: [3, 0], e: {position: [4, 0], fixed: both}}
+groups: {rope: {kind: cable, stiffness: 100, rest_length: rest}}
+members: {ab: {group: rope, nodes: [a, b]}, bc: {group: rope, nodes: [b, c]}, cd: {group: rope, nodes: [c, d]}, de: {group: rope, nodes: [d, e]}}
+actuators: {reel: {member: ab, signal: {constant: 0}}}
+loads: {pull: {node: c, force: [0, -1]}}
+END
+for rest in 1 1.05 1.3; do
+  finds "def load: (.[1] * .[1] + 4 | sqrt) as \$l | -100 * (\$l - 2 * $rest) * .[1] / \$l;
+    ([.events[].kind] == [\"mechanism\"]) and ([.points[].stable] | all) and (.points[-1].nodes.c | load - 1 | fabs) < 1e-9" \
+    path rope.yaml --set rest=$rest
+done
+# Reeled in from slack it tightens at 4 m, reeled out it goes slack: that nothing changes on a long part is said.
+sed '/^loads/d' rope.yaml >reel.yaml
+finds '.end == "until" and ([.points[-1].forces[] - 5 | fabs] | max) < 1e-9 and ([.points[].stable] | all) and
+  ([.events[].kind] | unique) == ["mechanism", "taut"]' path reel.yaml --set rest=1.1 --set drawn=0.2 --over reel --until "-0.6 m"
+finds '.end == "until" and [.events[].kind] == ["slack", "mechanism"] and
+  (.remark | test("no member carries a force from reel 0.4 m to reel 1 m"))' path reel.yaml --set rest=0.9 --over reel --until "1 m"
+# s^2 = 1 - t^2 is a circle: the path comes back to where it began.
+yaml circle.yaml <<'END'
+parameters: {t: 0}
+nodes: {o: {position: [0, 0], fixed: both}, p: {position: [3, 0], mass: 1, fixed: y}}
+members: {a: {kind: spring, nodes: [o, p], rest_length: 2, law: {kind: polynomial, coefficients: [0, 1 N/m^2]}}}
+loads: {f: {node: p, force: [1 - t * t, 0]}}
+END
+finds '.end == "closed" and (.remark | test("^closed path")) and .points[-1].nodes == .points[0].nodes and
+  ([.events[].value | fabs - 1 | fabs] | max) < 1e-9 and (.events | length) == 2' path circle.yaml --over t --until 2
 
 # A force that is rounding beside the others of the path is 0.
 expect 0 path "$models/gallery/bumping-beams.yaml"

@@ -17,13 +17,13 @@ static const double STOP = 0.1, ANCHOR = 0.5, REST = 0.7, SPRING = 500, STOP_SPR
 
 /*
  * A slider at (x, 0) under a compressed spring from (0, ANCHOR), which drives it from the middle;
- * cables stop it beyond -STOP and STOP. It begins at the left and is pushed to the right by 1 N.
+ * cables stop it beyond -STOP and STOP. It begins at the left and is pushed to the right by 1 N; or the other way.
  */
-static strut_setup toggle(void) {
+static strut_setup toggle(double way) {
   strut_setup setup = build_setup();
   int32_t anchor = build_support(&setup.scene, 0, ANCHOR);
   int32_t left = build_support(&setup.scene, -1, 0), right = build_support(&setup.scene, 1, 0);
-  int32_t tip = build_node(&setup.scene, -0.12, 0);
+  int32_t tip = build_node(&setup.scene, -0.12 * way, 0);
   assert_int_equal(tip, TIP);
   setup.scene.nodes[tip].fixed[1] = true;
   build_sized(&setup.scene, STRUT_SPRING, anchor, tip, SPRING, 0, 0, REST);
@@ -40,43 +40,34 @@ static double toggle_load(double x) {
   return load;
 }
 
-/* The load turns at both kinks, where the stiffness jumps from one sign to the other. */
+/* The load turns at both kinks, where the stiffness jumps from one sign to the other, along either way. */
 TEST(limit_points_at_kinks) {
-  OWN(strut_setup) setup = toggle();
   double turn = toggle_load(-STOP),
          hard = SPRING * (1 - REST * ANCHOR * ANCHOR / pow(hypot(STOP, ANCHOR), 3));
   assert_true(hard < 0 && hard + STOP_SPRING > 0); /* the tangents on the two sides */
-  OWN(walk) w = walk_until(&setup, 2 * turn);
-  assert_int_equal(w.path.event_count, 4);
-  const strut_path_event *e = w.path.events;
-  check_event(&e[0], STRUT_PATH_SLACK, turn, 0, 1);
-  check_event(&e[1], STRUT_PATH_KINK_LIMIT, turn, 0, 1);
-  check_event(&e[2], STRUT_PATH_TAUT, -turn, 1, 0);
-  check_event(&e[3], STRUT_PATH_KINK_LIMIT, -turn, 1, 0);
-  assert_all_equal(e[0].index, 2, e[2].index, 1);
-  size_t unstable = 0;
-  for (size_t i = 0; i < w.path.point_count; i++) {
-    const strut_path_point *p = &w.path.points[i];
-    double x = p->at.q[2 * TIP];
-    assert_near(p->at.factor, toggle_load(x), 1e-11 * turn);
-    /* the kink at -STOP is judged as the path goes on, and so is that at STOP */
-    bool middle = x > -STOP - 1e-9 && x < STOP - 1e-9;
-    assert_int_equal(p->negative, middle ? 1 : 0);
-    unstable += middle;
+  for (int way = 1; way >= -1; way -= 2) {
+    OWN(strut_setup) setup = toggle(way);
+    OWN(walk) w = walk_until(&setup, 2 * way * turn);
+    assert_int_equal(w.path.event_count, 4);
+    const strut_path_event *e = w.path.events;
+    check_event(&e[0], STRUT_PATH_SLACK, way * turn, 0, 1);
+    check_event(&e[1], STRUT_PATH_KINK_LIMIT, way * turn, 0, 1);
+    check_event(&e[2], STRUT_PATH_TAUT, -way * turn, 1, 0);
+    check_event(&e[3], STRUT_PATH_KINK_LIMIT, -way * turn, 1, 0);
+    assert_all_equal(e[0].index, way > 0 ? 2 : 1, e[2].index, way > 0 ? 1 : 2);
+    size_t unstable = 0;
+    for (size_t i = 0; i < w.path.point_count; i++) {
+      const strut_path_point *p = &w.path.points[i];
+      double x = way * p->at.q[2 * TIP];
+      assert_near(p->at.factor, way * toggle_load(x), 1e-11 * turn);
+      /* the kink at -STOP is judged as the path goes on, and so is that at STOP */
+      bool middle = x > -STOP - 1e-9 && x < STOP - 1e-9;
+      assert_int_equal(p->negative, middle ? 1 : 0);
+      unstable += middle;
+    }
+    assert_true(unstable > 3);
+    assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
   }
-  assert_true(unstable > 3);
-  assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
-}
-
-/* The other way along it: the same points, each side judged as before. */
-TEST(kinks_backwards) {
-  OWN(strut_setup) setup = toggle();
-  setup.scene.nodes[TIP].start[0] = 0.12;
-  double turn = toggle_load(-STOP);
-  OWN(walk) w = walk_until(&setup, -2 * turn);
-  assert_int_equal(w.path.event_count, 4);
-  check_event(&w.path.events[1], STRUT_PATH_KINK_LIMIT, -turn, 0, 1);
-  check_event(&w.path.events[3], STRUT_PATH_KINK_LIMIT, turn, 1, 0);
 }
 
 /*
@@ -106,23 +97,27 @@ TEST(bifurcation_at_kink) {
   }
 }
 
-/* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
+/* Von Mises' truss falls on the ground beyond its limit point, however near: stable from there, the load grows. */
 TEST(touchdown_restores_stability) {
-  const double a = 1, h = 0.3, k = 1000, floor = 0.05;
-  const int32_t apex = 2;
-  OWN(strut_setup) setup = arch(a, h, k);
-  build_contact(&setup.scene, apex, 1e4, 0);
-  setup.scene.ground.height = floor;
-  build_load(&setup.scene, apex, 0, -1, -1);
-  OWN(walk) w = walk_until(&setup, 15);
-  double there = arch_load(a, h, k, floor);
-  assert_all_equal(w.path.event_count, 3, w.path.events[0].kind, STRUT_PATH_LIMIT,
-                   w.path.events[0].after, 1);
-  check_event(&w.path.events[1], STRUT_PATH_TOUCHDOWN, there, 1, 0);
-  check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
-  const strut_path_point *end = &w.path.points[w.path.point_count - 1];
-  double y = end->at.q[2 * apex + 1], push = arch_load(a, h, k, y);
-  assert_all_near(1e-9, end->at.contact[0], 1e4 * (floor - y), end->at.contact[0] + push, 15);
+  const double a = 1, h = 0.21, k = 1000, top = sqrt(pow(a * a * hypot(a, h), 2.0 / 3) - a * a);
+  const double floors[] = {0.05, top - 1e-3, top - 1e-8, top - 1e-12}, grounds[] = {1e4, 1e7};
+  for (size_t i = 0; i < 8; i++) {
+    double floor = floors[i / 2], ground = grounds[i % 2];
+    OWN(strut_setup) setup = arch(a, h, k);
+    build_contact(&setup.scene, 2, ground, 0);
+    setup.scene.ground.height = floor;
+    build_load(&setup.scene, 2, 0, -1, -1);
+    OWN(walk) w = walk_until(&setup, 15);
+    double there = arch_load(a, h, k, floor);
+    assert_all_equal(w.path.event_count, 3, w.path.events[0].kind, STRUT_PATH_LIMIT,
+                     w.path.events[0].after, 1);
+    check_event(&w.path.events[1], STRUT_PATH_TOUCHDOWN, there, 1, 0);
+    check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
+    const strut_path_state *end = &w.path.points[w.path.point_count - 1].at;
+    double push = arch_load(a, h, k, end->q[5]);
+    assert_all_near(1e-8, end->contact[0], ground * (floor - end->q[5]), end->contact[0] + push,
+                    15);
+  }
 }
 
 /*

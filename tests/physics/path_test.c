@@ -43,6 +43,11 @@ static void check_arch(double a, double h, double k, double expected, double dig
     assert_int_equal(p->negative, fabs(y) > top ? 0 : 1);
   }
   assert_all(last(&w)->at.factor == 1.5 * limit, last(&w)->at.q[5] < -h);
+  for (int side = -1; side <= 1;
+       side += 2) { /* a hair below the limit it ends there, above on the far side */
+    OWN(walk) near = walk_until(&setup, limit * (1 + side * 1e-11));
+    assert_int_equal(walk_count(&near.path, STRUT_PATH_LIMIT), side + 1);
+  }
 }
 
 TEST(limit_points) {
@@ -115,22 +120,4 @@ TEST(named_load) {
     assert_near(path.points[0].at.q[2 * b], i ? 1 : 0.97, 1e-14);
     assert_near(path.points[path.point_count - 1].at.q[2 * b], i ? 0.97 : 1.02, 1e-14);
   }
-}
-
-static void refuse(const strut_setup *setup, const char *load, const char *message) {
-  OWN(strut_path) path = {0};
-  strut_error error = {0};
-  strut_path_options options = {.load = load};
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
-  assert_fails(strut_path_follow(model, &setup->experiment, &options, &path, &error), STRUT_USAGE,
-               error, message);
-}
-
-TEST(refusals) {
-  OWN(strut_setup) setup = pressed_arch(1, 0.3, 1000);
-  refuse(&setup, "push", "unknown load 'push'; the scene's loads are: l1");
-  setup.scene.nodes[setup.scene.loads[0].node].fixed[1] = true; /* the load is vertical */
-  refuse(&setup, NULL, "acts on nothing that can move");
-  setup.scene.load_count = 0;
-  refuse(&setup, NULL, "no constant load");
 }

@@ -39,26 +39,40 @@ bool strut_path_wants_fork(strut_path_walk *walk, const double *unknowns) {
   return false;
 }
 
+bool strut_path_freeze(const strut_path_system *system, strut_arena *arena,
+                       strut_path_frozen *frozen) {
+  const strut_model *model = system->model;
+  *frozen = (strut_path_frozen){system->latest.pulling, system->contacts.contact,
+                                system->elements.element};
+  return STRUT_DUPLICATE(arena, STRUT_NEW(frozen->pulling, model->members.count),
+                         STRUT_NEW(frozen->contact, model->contacts.count),
+                         STRUT_NEW(frozen->element, model->elements.count));
+}
+
+void strut_path_thaw(strut_path_system *system, const strut_path_frozen *frozen) {
+  size_t contacts = (size_t)system->model->contacts.count,
+         elements = (size_t)system->model->elements.count;
+  memcpy(system->latest.pulling, frozen->pulling, (size_t)system->model->members.count);
+  if (contacts)
+    memcpy(system->contacts.contact, frozen->contact, contacts * sizeof *frozen->contact);
+  if (elements)
+    memcpy(system->elements.element, frozen->element, elements * sizeof *frozen->element);
+}
+
 void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
                           const strut_path_rays *rays, const strut_path_ray *way) {
   strut_path_system *system = &walk->system;
   if (!strut_path_wants_fork(walk, unknowns)) return;
   strut_path_fork *fork = &walk->forks.fork[walk->forks.count];
-  const strut_model *model = system->model;
   *fork =
       (strut_path_fork){.y = strut_arena_copy(&system->arena, unknowns, 1, strut_path_bytes(walk)),
                         .rays = *rays,
-                        .pulling = system->latest.pulling,
-                        .contact = system->contacts.contact,
-                        .element = system->elements.element,
                         .factor = strut_path_value(system, unknowns),
                         .arc = walk->arc + strut_path_distance(walk, walk->y, unknowns),
                         .path = walk->forks.path,
                         .depth = walk->forks.depth};
-  bool kept = STRUT_DUPLICATE(&system->arena, STRUT_NEW(fork->pulling, model->members.count),
-                              STRUT_NEW(fork->contact, model->contacts.count),
-                              STRUT_NEW(fork->element, model->elements.count));
-  walk->failed = walk->failed || !fork->y || !kept;
+  walk->failed =
+      walk->failed || !fork->y || !strut_path_freeze(system, &system->arena, &fork->frozen);
   for (int32_t k = 0; k < rays->count; k++)
     fork->rays.ray[k].done =
         fork->rays.ray[k].own < 0 || &rays->ray[k] == way || (!way && fork->rays.ray[k].own > 0);
@@ -75,11 +89,7 @@ static void forget_directions(strut_path_system *system) {
 static bool leave_fork(strut_path_walk *walk, const strut_path_fork *fork,
                        const strut_path_ray *ray) {
   strut_path_system *system = &walk->system;
-  memcpy(system->latest.pulling, fork->pulling, (size_t)system->model->members.count);
-  size_t contacts = (size_t)system->model->contacts.count,
-         elements = (size_t)system->model->elements.count;
-  if (contacts) memcpy(system->contacts.contact, fork->contact, contacts * sizeof *fork->contact);
-  if (elements) memcpy(system->elements.element, fork->element, elements * sizeof *fork->element);
+  strut_path_thaw(system, &fork->frozen);
   memcpy(walk->y, fork->y, strut_path_bytes(walk));
   forget_directions(system);
   if (!strut_path_tangent(system, ray->y, ray->direction, walk->tangent)) return false;
@@ -109,9 +119,9 @@ static bool mark_arrival(const strut_path_walk *walk, strut_path_fork *fork, con
   return own != NULL;
 }
 
-/* Distance of a bifurcation to a step of the walk, a cubic from `from` with its tangent to w->y. */
-static double passing_distance(const strut_path_walk *walk, const double *from,
-                               const double *tangent, const double *unknowns) {
+/* Distance of a bifurcation to the latest step of the walk, a cubic. */
+static double passing_distance(const strut_path_walk *walk, const double *unknowns) {
+  const double *from = walk->last, *tangent = walk->last_tangent;
   double length = strut_path_distance(walk, walk->y, from), least = HUGE_VAL;
   for (int k = 0; k <= PLACES; k++) {
     double t = (double)k / PLACES, r = 1 - t, square = 0;
@@ -128,9 +138,6 @@ static double passing_distance(const strut_path_walk *walk, const double *from,
 static void remark_joined(strut_path_walk *walk, const strut_path_fork *fork) {
   strut_path *path = walk->path;
   char joined[40] = "the path", at[STRUT_PATH_TEXT];
-  memcpy(walk->y, fork->y, strut_path_bytes(walk));
-  strut_path_add_point(walk, path->points[path->point_count - 1].negative);
-  path->end = STRUT_PATH_JOINED;
   if (fork->path) snprintf(joined, sizeof joined, "branch %d", (int)fork->path);
   snprintf(path->remark, sizeof path->remark, "joins %s at the bifurcation at %s", joined,
            strut_path_at(walk, fork->factor, at));
@@ -153,7 +160,9 @@ static bool reach_fork(strut_path_walk *walk, const strut_path_fork *origin) {
     for (int32_t i = 0; i <= walk->system.n; i++)
       ahead += walk->tangent[i] * (fork->y[i] - walk->y[i]) / distance;
     if (ahead < AHEAD || !mark_arrival(walk, fork, walk->y, AHEAD)) continue;
-    walk->arc += distance;
+    memcpy(walk->last, walk->y, strut_path_bytes(walk));
+    walk->last_arc = walk->arc;
+    strut_path_end_within(walk, fork->y, STRUT_PATH_JOINED);
     remark_joined(walk, fork);
     return true;
   }
@@ -161,19 +170,13 @@ static bool reach_fork(strut_path_walk *walk, const strut_path_fork *origin) {
 }
 
 /* The same of one that its last step has passed. */
-static bool join_fork(strut_path_walk *walk, const strut_path_fork *origin, const double *from,
-                      const double *tangent) {
-  strut_path *path = walk->path;
+static bool join_fork(strut_path_walk *walk, const strut_path_fork *origin) {
   for (size_t k = 0; k < walk->forks.count; k++) {
     strut_path_fork *fork = &walk->forks.fork[k];
     if (!may_join(walk, fork, origin)) continue;
-    if (passing_distance(walk, from, tangent, fork->y) > PASSING + 1.0 / PLACES) continue;
-    mark_arrival(walk, fork, from, ARRIVING);
-    walk->arc =
-        path->points[path->point_count - 2].at.arc + strut_path_distance(walk, from, fork->y);
-    path->point_count--;
-    while (path->event_count > 0 && path->events[path->event_count - 1].at.arc > walk->arc)
-      path->event_count--;
+    if (passing_distance(walk, fork->y) > PASSING + 1.0 / PLACES) continue;
+    mark_arrival(walk, fork, walk->last, ARRIVING);
+    strut_path_end_within(walk, fork->y, STRUT_PATH_JOINED);
     remark_joined(walk, fork);
     return true;
   }
@@ -185,21 +188,14 @@ static void walk_branch(strut_path_walk *walk, const strut_path_fork *origin,
                         const strut_experiment *experiment) {
   const strut_path_options *options = walk->system.parameter.options;
   int32_t steps = options->steps > 0 ? options->steps : STRUT_PATH_USUAL_STEPS;
-  double *from = strut_allocate(1, strut_path_bytes(walk)),
-         *tangent = strut_allocate(1, strut_path_bytes(walk));
-  walk->failed = walk->failed || !from || !tangent;
   walk->path->end = STRUT_PATH_STEPS;
   for (int32_t i = 0; i < steps && !walk->failed && !strut_experiment_interrupted(experiment);
        i++) {
-    memcpy(from, walk->y, strut_path_bytes(walk));
-    memcpy(tangent, walk->tangent, ((size_t)walk->system.n + 1) * sizeof *tangent);
     if (reach_fork(walk, origin)) break;
     bool on = strut_path_walk_step(walk);
-    if (walk->failed || join_fork(walk, origin, from, tangent) || !on) break;
+    if (walk->failed || join_fork(walk, origin) || !on) break;
   }
   strut_path_remark_steps(walk, steps);
-  strut_release(from);
-  strut_release(tangent);
 }
 
 /* Square of what the coordinates change by along a path [m^2]. */

@@ -15,8 +15,7 @@ static const double TOGETHER = 1e-9; /* [units of y] what vanishes so near does 
 static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue that is zero */
 static const double ONWARD = 0.02;   /* of a branch: change of the parameter by which it goes on */
 
-/* The node that a vector over the free coordinates moves most. */
-static int32_t most_moved(const strut_path_system *system, const gsl_vector *vector) {
+int32_t strut_path_most_moved(const strut_path_system *system, const gsl_vector *vector) {
   int32_t best = 0;
   double most = -1;
   for (int32_t i = 0; i < system->n; i++) {
@@ -40,8 +39,7 @@ static double coupling(const strut_path_system *system, const gsl_vector *vector
   return load > 0 ? fabs(work) / sqrt(load) : 0;
 }
 
-/* Does the parameter turn back on the step? No sign of a rate below rounding counts. */
-static bool turns_back(const strut_path_walk *walk) {
+bool strut_path_turns_back(const strut_path_walk *walk) {
   double a = walk->tangent[walk->system.n], b = walk->next_tangent[walk->system.n], level = 1e-9;
   return (a > level && b < -level) || (a < -level && b > level);
 }
@@ -80,6 +78,15 @@ typedef struct critical {
   bool limit;         /* the parameter works on the kernel, and turns back */
   int32_t before, after;
 } critical;
+
+/* Does no contact slide, and no cable rub? Then the stiffness is symmetric. */
+static bool is_symmetric(const strut_path_system *system) {
+  for (int32_t i = 0; i < system->model->contacts.count; i++) {
+    const strut_path_contact *own = &system->contacts.contact[i];
+    if (own->grips && own->touches && !own->sticks) return false;
+  }
+  return !strut_path_has_rubbing(system);
+}
 
 /* Where the parameter turns back though no load works on what vanishes, another path may lead on. */
 static const strut_path_ray *find_way_on(const strut_path_walk *walk, const strut_path_rays *rays) {
@@ -123,7 +130,6 @@ static bool meet_critical(strut_path_walk *walk, const strut_path_piece *piece,
                           const double *unknowns, critical *self, strut_path_ray *way) {
   strut_path_system *system = &walk->system;
   int32_t crossed = self->after - self->before, first = 0;
-  bool turned = turns_back(walk);
   double works = 0;
   self->null = count_null(walk, piece, unknowns, &first);
   if (!self->null) { /* it passes within rounding: nearest to zero */
@@ -135,8 +141,11 @@ static bool meet_critical(strut_path_walk *walk, const strut_path_piece *piece,
   for (int32_t k = first; k < first + self->null && k < system->n; k++) {
     gsl_vector_const_view null = gsl_matrix_const_column(system->algebra.vectors, (size_t)k);
     works = fmax(works, coupling(system, &null.vector));
-    if (k == first) self->node = most_moved(system, &null.vector);
+    if (k == first) self->node = strut_path_most_moved(system, &null.vector);
   }
+  /* what the parameter works on turns it back, though by less than rounding where a kink is near */
+  bool turned =
+      strut_path_turns_back(walk) || (works > WEAKLY && self->null == 1 && is_symmetric(system));
   bool fork = !turned || works < WEAKLY; /* at a limit point that rounding makes of one, too */
   bool ends = turned && fork && walk->forks.path == 0; /* branches go on smoothly */
   strut_path_rays rays = {0};
@@ -150,9 +159,8 @@ static bool meet_critical(strut_path_walk *walk, const strut_path_piece *piece,
   return on != NULL;
 }
 
-/* The rate of the parameter along the path. */
-static double measure_turn(strut_path_system *system, const double *unknowns,
-                           const strut_path_piece *piece, int32_t which) {
+double strut_path_measure_turn(strut_path_system *system, const double *unknowns,
+                               const strut_path_piece *piece, int32_t which) {
   (void)which;
   if (!strut_path_tangent(system, unknowns, piece->tangent, system->latest.row)) return (double)NAN;
   return system->latest.row[system->n];
@@ -176,11 +184,9 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *wh
   int32_t before = walk->negative, after = system->spectrum.negative,
           folded = system->spectrum.folded;
   int32_t sense = after > before ? 1 : -1, count = sense * (after - before), i = 0;
-  bool turned = turns_back(walk), leads_on = false, met = false;
-  for (int32_t k = 0; k < system->n; k++) {
-    walk->earlier_values[k] = walk->values[k];
-    walk->values[k] = system->spectrum.value[k];
-  }
+  bool turned = strut_path_turns_back(walk), leads_on = false, met = false;
+  for (int32_t k = 0; k < system->n; k++) walk->earlier_values[k] = walk->values[k];
+  strut_path_keep_values(walk);
   walk->earlier = walk->negative < 0 ? 0.0 : strut_path_distance(walk, whole->from, whole->to);
   walk->negative = after;
   if (before < 0 || !(piece->length > 0)) return false;
@@ -201,7 +207,8 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *wh
     leads_on = meet_critical(walk, piece, walk->fork, &c, way);
     met = true;
   }
-  if (turned && !met && strut_path_locate(system, piece, measure_turn, -1, walk->fork) >= 0) {
+  if (turned && !met &&
+      strut_path_locate(system, piece, strut_path_measure_turn, -1, walk->fork) >= 0) {
     critical c = {.before = before, .after = after};
     leads_on = meet_critical(walk, piece, walk->fork, &c, way);
   }
@@ -223,6 +230,10 @@ static const double UNSIGNED = 1e-12;   /* likewise: not even the sign is sure *
 static const double ZERO_VALUE = 1e-13; /* of a soft mode's largest parts: no sign below this */
 static const double NO_VALUE = 1e-20;   /* of the largest eigenvalue, likewise */
 static const double ROUNDING = 2e-16;   /* of a double */
+static const double NEUTRAL =
+    1e-9; /* likewise: a motion that an event has found without stiffness */
+static const double UNSTRESSED =
+    1e-10; /* of the largest eigenvalue: what rounding lends to a mechanism */
 
 static double held_motion(const strut_path_system *system, int32_t k, size_t mode) {
   double sum = 0;
@@ -232,9 +243,9 @@ static double held_motion(const strut_path_system *system, int32_t k, size_t mod
   return sum;
 }
 
-/* The stiffness seen by the modes first, first + 1, ... */
-static void project(strut_path_system *system, size_t first, size_t count, double *sum) {
-  double noise[MOST_SOFT] = {0}, along[MOST_SOFT], across[MOST_SOFT];
+/* The stiffness seen by the modes first, first + 1, ...; returns the largest part that one force has in one of them. */
+static double project(strut_path_system *system, size_t first, size_t count, double *sum) {
+  double parts = 0.0, noise[MOST_SOFT] = {0}, along[MOST_SOFT], across[MOST_SOFT];
   memset(sum, 0, count * count * sizeof *sum);
   strut_mode_form form = {.model = system->model,
                           .row_of = system->potential->row_of,
@@ -246,8 +257,14 @@ static void project(strut_path_system *system, size_t first, size_t count, doubl
                           .noise = noise,
                           .along = along,
                           .across = across};
-  for (int32_t i = 0; i < strut_force_count(system->model, true); i++)
-    if (system->force[i].pose.acts) strut_mode_form_add(&form, &system->force[i], system->latest.q);
+  for (int32_t i = 0; i < strut_force_count(system->model, true); i++) {
+    const strut_force *force = &system->force[i];
+    if (!force->pose.acts) continue;
+    strut_mode_form_add(&form, force, system->latest.q);
+    for (size_t k = 0; k < count; k++)
+      parts = fmax(parts, fmax(fabs(force->pose.slope) * along[k] * along[k],
+                               fabs(force->across) * across[k] * across[k]));
+  }
   for (int32_t i = 0; i < system->held.count; i++) {
     for (size_t k = 0; k < count; k++) along[k] = held_motion(system, i, first + k);
     for (size_t k = 0; k < count; k++)
@@ -256,6 +273,7 @@ static void project(strut_path_system *system, size_t first, size_t count, doubl
   for (size_t k = 0; k < count; k++)
     for (size_t l = 0; l < k; l++) sum[l * count + k] = sum[k * count + l];
   system->spectrum.soft_parts = form.part;
+  return fmax(form.part, parts);
 }
 
 /* Ritz values and vectors in place of the soft eigenvalues; false: out of memory. */
@@ -303,6 +321,30 @@ static size_t find_soft(const strut_path_system *system, double below, size_t *f
   return count;
 }
 
+double strut_path_keep_values(strut_path_walk *walk) {
+  double least = HUGE_VAL, most = 0.0;
+  for (int32_t i = 0; i < walk->system.n; i++) {
+    double value = walk->values[i] = walk->system.spectrum.value[i];
+    least = fmin(least, fabs(value)), most = fmax(most, fabs(value));
+  }
+  if (least > NEUTRAL * most) walk->system.lends = false;
+  return most;
+}
+
+int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,
+                                   int32_t *first) {
+  double sum[MOST_SOFT * MOST_SOFT], most = 0.0;
+  int32_t count = 0;
+  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_VECTORS)) return 0;
+  for (int32_t i = 0; i < system->n; i++) most = fmax(most, fabs(system->spectrum.value[i]));
+  for (int32_t i = 0; i < system->n && count < MOST_SOFT; i++) {
+    if (system->spectrum.value[i] < -NEUTRAL * most) return 0;
+    if (system->spectrum.value[i] <= NEUTRAL * most && !count++) *first = i;
+  }
+  bool stressed = count && project(system, (size_t)*first, (size_t)count, sum) > UNSTRESSED * most;
+  return stressed ? 0 : count;
+}
+
 /* Where a contact slides: eigenvalues by their real parts, which are those that pass through zero. */
 static bool find_unsymmetric(strut_path_system *system) {
   size_t n = (size_t)system->n;
@@ -335,15 +377,6 @@ static bool find_unsymmetric(strut_path_system *system) {
   return found;
 }
 
-/* Does some contact slide? */
-static bool slides(const strut_path_system *system) {
-  for (int32_t i = 0; i < system->model->contacts.count; i++) {
-    const strut_path_contact *own = &system->contacts.contact[i];
-    if (own->grips && own->touches && !own->sticks) return true;
-  }
-  return false;
-}
-
 /* Elements on a piece of their law that goes back: each is unstable by itself, whatever holds its ends. */
 static int32_t count_folded(const strut_path_system *system) {
   int32_t count = 0;
@@ -361,7 +394,7 @@ bool strut_path_spectrum(strut_path_system *system, const double *unknowns,
   if (!strut_path_evaluate(system, unknowns)) return false;
   system->spectrum.negative = system->spectrum.folded = count_folded(system);
   if (system->n == 0) return true;
-  if (slides(system) || strut_path_has_rubbing(system)) return find_unsymmetric(system);
+  if (!is_symmetric(system)) return find_unsymmetric(system);
   if (wanted == STRUT_PATH_VECTORS) {
     find_vectors(system);
   } else {

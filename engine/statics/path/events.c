@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/path/path_parts.h"
 
 /* Regula falsi with the Illinois correction; each trial is corrected back onto the path. */
@@ -191,7 +192,8 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
 enum { MOST_TOGETHER = 10 };
 
 static const double AHEAD = 1e-6;   /* how far along a tangent it is seen what a switch will do */
-static const double STEADY = 1e-12; /* of the size: a switch that changes less stays as it is */
+static const double STEADY = 1e-12; /* of what moves: a switch that changes less stays as it is */
+static const double LAST = 1e-15;   /* of the size: likewise, by rounding */
 
 /* The switches that stand at zero at a kink, in their order; the one that made it is `first`. */
 typedef struct switch_group {
@@ -247,9 +249,11 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
   if (!strut_path_tangent(system, walk->y, walk->tangent, walk->next_tangent) &&
       !strut_path_tangent(system, walk->y, walk->trial, walk->next_tangent))
     return false;
+  double motion = sqrt(strut_dot(walk->next_tangent, walk->next_tangent, system->n));
+  double least = fmax(STEADY * motion, LAST) * system->size;
   for (int32_t i = 0; i < self->count; i++) {
     double change = change_ahead(walk, self, i, walk->next_tangent);
-    if (!(fabs(change) > STEADY * system->size)) continue;
+    if (!(fabs(change) > least)) continue;
     bool on = self->was_on[i] != (thrown >> i & 1);
     double wanted = (change > 0) == on ? 1 : -1;
     if (sense == 0) {
@@ -263,22 +267,36 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
   return true;
 }
 
+/* Does a stable path continue with the parameter? */
+static bool leads_on(strut_path_walk *walk) {
+  int32_t n = walk->system.n;
+  return walk->tangent[n] * walk->next_tangent[n] > 0 &&
+         strut_path_spectrum(&walk->system, walk->y, STRUT_PATH_SIGNS) &&
+         walk->system.spectrum.negative == 0;
+}
+
 /*
- * Chooses the switches thrown here: those that the old stiffness throws, else any consistent set.
+ * Chooses the switches thrown here: those that the old stiffness throws, else any consistent set. Where the parameter
+ * would turn back a stable path on which it does not goes first.
  */
 static bool choose_switches(strut_path_walk *walk, const switch_group *self, const double *beyond,
                             unsigned *thrown) {
+  int32_t n = walk->system.n;
   unsigned first = 1u << self->first;
   for (int32_t i = 0; i < self->count; i++) {
     double value = strut_path_switch_value(&walk->system, self->which[i], beyond);
     if (self->was_on[i] ? value < 0 : value > 0) first |= 1u << i;
   }
+  bool found = find_tangent(walk, self, first, beyond);
+  bool turned = found && walk->tangent[n] * walk->next_tangent[n] < 0;
   *thrown = first;
-  if (find_tangent(walk, self, first, beyond)) return true;
+  if (found && !turned) return true;
   for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
-    if (*thrown != first && find_tangent(walk, self, *thrown, beyond)) return true;
-  set_switches(walk, self, first);
+    if (*thrown != first && find_tangent(walk, self, *thrown, beyond) && (!found || leads_on(walk)))
+      return true;
   *thrown = first;
+  if (found) return find_tangent(walk, self, first, beyond);
+  set_switches(walk, self, first);
   return false;
 }
 
@@ -388,6 +406,8 @@ bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *be
   for (int32_t i = 0; i <= last; i++)
     if (thrown >> i & 1)
       report_switch(walk, g.which[i], before, i == last ? walk->negative : before);
+  bool turned = found && turn * walk->tangent[system->n] < 0;
+  if (turned && strut_path_leave_mechanism(walk, walk->y, turn)) return true;
   if (found) strut_path_report_exchange(walk, turn, before);
   return found;
 }

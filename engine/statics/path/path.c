@@ -279,8 +279,10 @@ static strut_status list_held(const path_start *self, strut_path *path, strut_er
 static bool allocate_walk(strut_path_walk *walk) {
   if (!STRUT_NUMBERS(&walk->system.arena, 2 * (walk->system.n + 1), &walk->y, &walk->tangent,
                      &walk->next, &walk->next_tangent, &walk->trial, &walk->spare, &walk->upward,
-                     &walk->fork, &walk->values, &walk->earlier_values, &walk->scale,
-                     &walk->part.from, &walk->part.tangent, &walk->part.to))
+                     &walk->fork, &walk->values, &walk->earlier_values, &walk->scale, &walk->first,
+                     &walk->first_tangent, &walk->last, &walk->last_tangent, &walk->part.from,
+                     &walk->part.tangent, &walk->part.to) ||
+      !STRUT_NUMBERS(&walk->system.arena, walk->system.model->length, &walk->settled))
     return false;
   walk->upward[walk->system.n] = 1.0;
   walk->step = 0.01;
@@ -384,9 +386,25 @@ static double part_done(const strut_path *path, double until, int32_t step, int3
   return fmin(1.0, fmax(done, (at - from) / (until - from)));
 }
 
+/* Descends from q to rest where the parameter has a value, with held coordinates where q has them. */
+static bool settle_at(void *context, double value, double *q) {
+  const path_start *start = context;
+  strut_path_options options = *start->options;
+  options.from = value;
+  path_start there = {.options = &options, .drawn = start->drawn, .q = q};
+  there.setup.experiment = start->setup.experiment;
+  strut_error error;
+  bool found = make_model(&there, &error) == STRUT_OK;
+  found = found && descend_to_rest(&there, start->held, false, &error) == STRUT_OK;
+  strut_model_free(there.model);
+  if (there.owned) strut_setup_free(&there.setup);
+  strut_arena_free(&there.arena);
+  return found;
+}
+
 static strut_status walk_from(path_start *self, double until, int32_t steps, strut_path *path,
                               strut_error *error) {
-  strut_path_walk w = {.path = path};
+  strut_path_walk w = {.path = path, .settle = settle_at, .settler = self};
   strut_status status = create_walk(self, until, &w, error);
   if (status == STRUT_OK) {
     strut_path_unplace(&w.system, self->q, w.y);
@@ -402,6 +420,7 @@ static strut_status walk_from(path_start *self, double until, int32_t steps, str
     if (w.forks.fork && path->point_count > 0)
       strut_path_walk_branches(&w, path, &self->setup.experiment);
     drop_rounding(self->model, path);
+    if (!w.failed) strut_path_remark_idle(&w);
     for (size_t k = 0; k < path->branch_count; k++) drop_rounding(self->model, &path->branches[k]);
     if (w.system.drifts && path->point_count == 0)
       status = strut_fail(error, STRUT_NOT_SETTLED,

@@ -40,7 +40,8 @@ enum { STRUT_PATH_COORDINATES = 600 };
   X(CORNER, "corner") /* a node passes a corner of a profile, where the force on it turns */       \
   X(SLIP, "slips")                                                                                 \
   X(STICK, "sticks")                                                                               \
-  X(ZERO_LENGTH, "zero length") /* a member shrinks to nothing, and its force turns round */
+  X(ZERO_LENGTH, "zero length") /* a member shrinks to nothing, and its force turns round */       \
+  X(MECHANISM, "mechanism")     /* motions without stiffness, from which the path leads on */
 
 typedef enum strut_path_event_kind {
 #define STRUT_PATH_EVENT(NAME, text) STRUT_PATH_##NAME,
@@ -87,6 +88,7 @@ typedef struct strut_path_event {
   X(AWAY, "away")       /* a node left all bounds, or the parameter went ten ranges back */        \
   X(LOST, "lost")       /* no equilibrium nearby; the remark says where */                         \
   X(INVALID, "invalid") /* the scene is invalid beyond this value; the remark says why */          \
+  X(CLOSED, "closed")   /* it came back to its first point */                                      \
   X(JOINED, "joined")   /* of a branch: at a bifurcation found before; the remark says where */
 
 typedef enum strut_path_end {
@@ -122,7 +124,7 @@ typedef struct strut_path {
   strut_path_point *points;
   strut_path_event *events;
   strut_path_end end;
-  char remark[1000];      /* why it ended before `until`; else empty */
+  char remark[1000];      /* why it ended before `until`, and long parts on which nothing happens */
   const double *material; /* (slots) of cables that rub at guides, at the end: capstan.h; or NULL */
   const int *guide_mode;  /* (slots) what slipped last at their guides; or NULL */
   const int *piece;       /* (elements) of the law of each at the end, as elements.h counts them */

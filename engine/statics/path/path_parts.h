@@ -165,7 +165,7 @@ typedef struct strut_path_system {
   const strut_model *model;
   strut_potential *potential; /* for the numbers of its free coordinates */
   int32_t n;
-  bool lends;     /* no system of equations has been regular yet */
+  bool lends;     /* no point since the beginning had a stiffness without motions that meet none */
   bool drifts;    /* the parameter works on a motion of the whole that meets no stiffness */
   bool strayed;   /* the last search for a switch left the path, see strut_path_locate */
   double stop_at; /* position of the coordinate at which the path stops [m] */
@@ -317,6 +317,9 @@ double strut_path_measure_switch(strut_path_system *system, const double *unknow
 /** An eigenvalue of the stiffness, counted from the lowest. */
 double strut_path_measure_eigenvalue(strut_path_system *system, const double *unknowns,
                                      const strut_path_piece *piece, int32_t which);
+/** The rate of the parameter along the path; which: -1 where it may turn at a bifurcation. */
+double strut_path_measure_turn(strut_path_system *system, const double *unknowns,
+                               const strut_path_piece *piece, int32_t which);
 
 /**
  * The point y (2 n + 2) of the piece where the measure is 0; it must have different signs at the
@@ -346,13 +349,23 @@ typedef struct strut_path_rays {
   strut_path_ray *ray; /* (count) the most stable first */
 } strut_path_rays;
 
+/** What is taut, acts and touches at a point. */
+typedef struct strut_path_frozen {
+  uint8_t *pulling;            /* (members) */
+  strut_path_contact *contact; /* (contacts) */
+  strut_path_element *element; /* (elements) */
+} strut_path_frozen;
+
+/** Copies it from the system into the arena, and back; false: out of memory. */
+bool strut_path_freeze(const strut_path_system *system, strut_arena *arena,
+                       strut_path_frozen *frozen);
+void strut_path_thaw(strut_path_system *system, const strut_path_frozen *frozen);
+
 /** A bifurcation that branches may leave: all that a walk needs to begin there. */
 typedef struct strut_path_fork {
   double *y; /* (2 n + 2) */
   strut_path_rays rays;
-  uint8_t *pulling;
-  strut_path_contact *contact; /* (contacts) */
-  strut_path_element *element; /* (elements) */
+  strut_path_frozen frozen;
   double factor, arc;
   int32_t path, depth;
 } strut_path_fork;
@@ -365,7 +378,14 @@ typedef struct strut_path_walk {
   double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
   double *fork, *values, *scale;  /* (2 n + 2) scratch; (n) eigenvalues at y, and scratch */
   double *earlier_values;         /* (n) at the point before, if nothing jumped since */
-  double earlier;                 /* how far back that is; 0: not known */
+  double *first, *first_tangent;  /* (2 n + 2), (n + 1) where the path begins */
+  double *last, *last_tangent;    /* (2 n + 2), (n + 1) where the latest step began */
+  double last_arc;
+  double *settled; /* (length) scratch */
+  /** Moves q (length) downhill to rest where the parameter has a value; false: it finds none. NULL: not to be had. */
+  bool (*settle)(void *settler, double value, double *q);
+  void *settler;
+  double earlier; /* how far back that is; 0: not known */
   /** A short part of the latest step with what changes on it. */
   struct {
     double *from, *tangent, *to;
@@ -396,6 +416,33 @@ static inline size_t strut_path_bytes(const strut_path_walk *walk) {
 bool strut_path_walk_begin(strut_path_walk *walk);
 /** One step, with all events on it; false: the path ends here, path->end says why. */
 bool strut_path_walk_step(strut_path_walk *walk);
+/**
+ * Finds what pulls, acts and touches at walk->y and the tangent there, and corrects y by up to `most`; false: there is
+ * no tangent, or no such equilibrium.
+ */
+bool strut_path_set_out(strut_path_walk *walk, double most);
+/** Takes the latest step back to its point y (2 n + 2), at which the path ends. */
+void strut_path_end_within(strut_path_walk *walk, const double *unknowns, strut_path_end end);
+
+/* Motions without stiffness, beside rounding. */
+
+/**
+ * Motions at y that meet no stiffness beyond rounding, in no member by itself: how many, the columns of
+ * algebra.vectors from `first` on. 0 too where another motion is unstable.
+ */
+int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,
+                                   int32_t *first);
+/** Are there several at walk->y, and does the parameter work on them? */
+bool strut_path_works_on_mechanisms(strut_path_walk *walk);
+/**
+ * Where a stable path has motions without stiffness at a point: it goes on where the structure comes to rest a little
+ * further, with the same forces. False: there is no such motion, or no such rest, and nothing has changed.
+ */
+bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, double sense);
+/** Remarks long parts of the path on which no member carries a force, or nothing changes. */
+void strut_path_remark_idle(const strut_path_walk *walk);
+/** The node that a vector over the free coordinates moves most. */
+int32_t strut_path_most_moved(const strut_path_system *system, const gsl_vector *vector);
 
 /**
  * The scene with the actuator at a value: rest length, angle or pressure of what it drives are those of
@@ -418,6 +465,8 @@ bool strut_path_find_next(strut_path_walk *walk);
 bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *piece,
                                strut_path_ray *way);
 
+/** Does the parameter turn back on the step? No sign of a rate below rounding counts. */
+bool strut_path_turns_back(const strut_path_walk *walk);
 /** All paths through y, where eigenvalues vanish; that with walk->tangent is the walk's own. */
 void strut_path_find_rays(strut_path_walk *walk, const double *unknowns, strut_path_rays *rays);
 /** Does only rounding part two branches that pass between two points? */
@@ -461,6 +510,8 @@ void strut_path_report_exchange(strut_path_walk *walk, double turn, int32_t befo
 /** Is this switch one of the many kinks that stand for the bend of a smooth law? */
 bool strut_path_is_bend(const strut_path_system *system, int32_t which);
 
+/** Keeps the latest eigenvalues as those of walk->y; the largest of them. */
+double strut_path_keep_values(strut_path_walk *walk);
 /** Eigenvalues below zero at walk->y, into walk->negative. */
 void strut_path_count_negative(strut_path_walk *walk);
 

@@ -60,7 +60,8 @@ STRUT_VALUES_HERE(event_values, EVENT, const strut_path_event *event = of->at)
   X("over", "", TEXT(over_load(walk) ? NULL : walk->name), "the parameter; null: a load's factor") \
   X("unit", "", TEXT(walk->unit), "SI unit of the parameter")                                      \
   X("end", "", TEXT(strut_path_end_word(walk->end)), "why it ended")                               \
-  X("remark", "", TEXT(walk->remark[0] ? walk->remark : NULL), "more about its end")               \
+  X("remark", "", TEXT(walk->remark[0] ? walk->remark : NULL),                                     \
+    "more about its end, and long parts on which nothing happens")                                 \
   X("points", "", LIST(walk->points, walk->point_count), "in their order", .rows = &point_values)  \
   X("events", "", LIST(walk->events, walk->event_count), "in their order", .rows = &event_values)
 STRUT_VALUES_HERE(walk_values, WALK, const strut_path *walk = of->at)

@@ -17,8 +17,10 @@ static const double FAR = 2.0;         /* a step longer than this leads nowhere 
 static const double NEAR = 1e-8;       /* from here on a step that shrinks no more is rounding */
 static const double RIGID = 1e-10;     /* of the stiffness: what a rigid motion may meet */
 static const double TOUCHED = 1e-14;   /* of the stiffness: what is lent to a motion without any */
-static const double LOOSE = 1e-8;      /* of the forces: what a motion without stiffness may meet */
-static const double FRESH = 1e-3;      /* of the range: rates from so near by do for a correction */
+static const double ROUNDED =
+    2.0; /* times a step: one that rounding has made of a singular matrix */
+static const double LOOSE = 1e-8; /* of the forces: what a motion without stiffness may meet */
+static const double FRESH = 1e-3; /* of the range: rates from so near by do for a correction */
 
 static bool make_matrices(strut_path_system *system) {
   strut_arena *arena = &system->arena;
@@ -311,15 +313,18 @@ static bool solve_with(strut_path_system *system, const double *row, const doubl
 /* Do [K slope] x and `top` agree? */
 static bool is_solution(strut_path_system *system, const double *top) {
   double change = gsl_vector_get(system->algebra.solution, (size_t)system->n), left = 0, size = 0;
+  double stiff = 0;
   for (size_t i = 0; i < (size_t)system->n; i++) {
     double sum = system->latest.slope[i] * change - (top ? top[i] : 0.0);
     size = fmax(size, fmax(fabs(system->latest.slope[i]), top ? fabs(top[i]) : 0.0));
-    for (size_t j = 0; j < (size_t)system->n; j++)
-      sum += system->size * gsl_matrix_get(system->algebra.hessian, i, j) *
-             gsl_vector_get(system->algebra.solution, j);
+    for (size_t j = 0; j < (size_t)system->n; j++) {
+      double k = gsl_matrix_get(system->algebra.hessian, i, j);
+      stiff = fmax(stiff, fabs(k));
+      sum += system->size * k * gsl_vector_get(system->algebra.solution, j);
+    }
     left = fmax(left, fabs(sum));
   }
-  return left <= LOOSE * size;
+  return left <= fmax(LOOSE * size, BALANCED * stiff * system->size);
 }
 
 /*
@@ -328,14 +333,15 @@ static bool is_solution(strut_path_system *system, const double *top) {
  */
 static bool solve(strut_path_system *system, const double *row, const double *top, double bottom) {
   double low, high;
-  if (solve_with(system, row, top, bottom, 0.0)) {
-    system->lends = false;
-    return true;
-  }
-  if (system->n == 0 || !system->lends) return false;
+  bool plain = solve_with(system, row, top, bottom, 0.0);
+  if (!system->lends || system->n == 0) return plain;
+  double far = plain ? gsl_blas_dnrm2(system->algebra.solution) : HUGE_VAL;
   gsl_matrix_minmax(system->algebra.hessian, &low, &high);
-  return solve_with(system, row, top, bottom, TOUCHED * fmax(-low, high)) &&
-         is_solution(system, top);
+  double stiff = fmax(-low, high);
+  bool lent = solve_with(system, row, top, bottom, stiff > 0.0 ? TOUCHED * stiff : 1.0) &&
+              is_solution(system, top);
+  if (!plain || (lent && far > ROUNDED * gsl_blas_dnrm2(system->algebra.solution))) return lent;
+  return solve_with(system, row, top, bottom, 0.0);
 }
 
 int strut_path_correct(strut_path_system *system, const double *row, double value,

@@ -142,8 +142,10 @@ static const double LONGEST_HELD = 0.02;     /* where the curve is a reaction */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
 /* Relative to the size: a cable whose length equals its rest length along the path, up to rounding. */
 static const double HANGING = 1e-15;
-static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
-static const double NEARBY = 1e-6; /* largest correction of the start */
+static const double CLOSE = 1e-6;    /* of the range: a value refused so near ends the path */
+static const double NEARBY = 1e-6;   /* largest correction of the start */
+static const double LOCATED = 1e-12; /* of the largest eigenvalue: rounding where an event is */
+static const double ALONG = 0.9;     /* cosine of tangents of one way through a point */
 
 double strut_path_dot(const strut_path_walk *walk, const double *first, const double *second) {
   double sum = 0;
@@ -192,18 +194,53 @@ void strut_path_count_negative(strut_path_walk *walk) {
                       STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
   walk->negative = walk->system.spectrum.negative;
   walk->earlier = 0.0;
-  for (int32_t i = 0; i < walk->system.n; i++) walk->values[i] = walk->system.spectrum.value[i];
+  double most = strut_path_keep_values(walk);
+  int32_t first, rounded = 0;
+  for (int32_t i = 0; i < walk->system.n; i++)
+    rounded += walk->values[i] < 0.0 && walk->values[i] > -LOCATED * most;
+  if (rounded && strut_path_find_mechanisms(&walk->system, walk->y, &first)) walk->negative = 0;
 }
 
-/* Ends the path exactly at the requested value if this piece passes it. */
+/* How far the next point is along the tangent. */
+static double length_ahead(const strut_path_walk *walk) {
+  return strut_path_dot(walk, walk->tangent, walk->next) -
+         strut_path_dot(walk, walk->tangent, walk->y);
+}
+
+/* How far the parameter is from where the path ends [ranges]. */
+static double measure_end(strut_path_system *system, const double *unknowns,
+                          const strut_path_piece *piece, int32_t which) {
+  (void)piece, (void)which;
+  return (unknowns[system->n] - 1.0) + unknowns[2 * system->n + 1];
+}
+
+/*
+ * Ends the path exactly at the requested value if this piece passes it, on its way to a limit point between its ends,
+ * too. To a hair below the limit the stiffness is singular but for rounding, and the search along the path finds it.
+ */
 static bool land_on_end(strut_path_walk *walk) {
   strut_path_system *system = &walk->system;
-  double from = walk->y[system->n], to = walk->next[system->n];
-  if (!(from < 1 && to >= 1)) return false;
-  double share = (1 - from) / (to - from);
+  strut_path_piece piece = {walk->y, walk->tangent, walk->next, length_ahead(walk)};
+  double from = walk->y[system->n];
+  if (!(from < 1)) return false;
+  if (walk->next[system->n] < 1) {
+    if (!strut_path_turns_back(walk) || walk->tangent[system->n] < 0 || !(piece.length > 0) ||
+        strut_path_locate(system, &piece, strut_path_measure_turn, 0, walk->fork) < 0 ||
+        system->strayed || !(measure_end(system, walk->fork, &piece, 0) >= 0))
+      return false;
+    piece.to = walk->fork;
+    piece.length = strut_path_dot(walk, walk->tangent, walk->fork) -
+                   strut_path_dot(walk, walk->tangent, walk->y);
+    if (!(piece.length > 0)) return false;
+  }
+  double share = (1 - from) / (piece.to[system->n] - from);
   for (int32_t i = 0; i < 2 * (system->n + 1); i++)
-    walk->trial[i] = walk->y[i] + share * (walk->next[i] - walk->y[i]);
-  if (strut_path_correct(system, walk->upward, 1.0, walk->trial) < 0) return false;
+    walk->trial[i] = walk->y[i] + share * (piece.to[i] - walk->y[i]);
+  bool corrected =
+      piece.to != walk->fork && strut_path_correct(system, walk->upward, 1.0, walk->trial) >= 0;
+  if (!corrected &&
+      (!(piece.length > 0) || strut_path_locate(system, &piece, measure_end, 0, walk->trial) < 0))
+    return false;
   walk->trial[system->n] = 1.0, walk->trial[2 * system->n + 1] = 0.0;
   memcpy(walk->next, walk->trial, strut_path_bytes(walk));
   return true;
@@ -331,10 +368,11 @@ static void advance(strut_path_walk *walk) {
   memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
 }
 
-/* How far the next point is along the tangent. */
-static double length_ahead(const strut_path_walk *walk) {
-  return strut_path_dot(walk, walk->tangent, walk->next) -
-         strut_path_dot(walk, walk->tangent, walk->y);
+/* A mechanism that is stretched out turns the parameter back, but tension may lead on. */
+static bool leaves_at_turn(strut_path_walk *walk, const strut_path_piece *piece) {
+  return strut_path_turns_back(walk) && piece->length > 0 &&
+         strut_path_locate(&walk->system, piece, strut_path_measure_turn, -1, walk->fork) >= 0 &&
+         strut_path_leave_mechanism(walk, walk->fork, walk->tangent[walk->system.n]);
 }
 
 /* Ends the piece where a switch is thrown and continues from there. */
@@ -345,6 +383,7 @@ static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_
   if (!strut_path_tangent(&walk->system, walk->next, walk->tangent, walk->next_tangent))
     memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
   strut_path_ray way;
+  if (leaves_at_turn(walk, piece)) return true;
   if (strut_path_find_criticals(walk, piece, &way)) return go_on_along(walk, &way);
   advance(walk);
   int32_t negative = walk->negative;
@@ -353,9 +392,10 @@ static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_
   if (!on && strut_path_turns_round(&walk->system, which)) return end_path(walk, STRUT_PATH_LOST);
   bool bends = on && negative == walk->negative && strut_path_is_bend(&walk->system, which);
   if (bends && since < walk->step && ++walk->bends < MOST_BENDS) return true;
-  strut_path_add_point(walk, walk->negative);
+  if (since > 0.0) strut_path_add_point(walk, walk->negative);
   walk->bends = 0;
-  return on || end_path(walk, STRUT_PATH_LOST);
+  return on || strut_path_leave_mechanism(walk, walk->y, walk->tangent[walk->system.n]) ||
+         end_path(walk, STRUT_PATH_LOST);
 }
 
 /* A step, or a part of it up to a kink. */
@@ -365,7 +405,9 @@ static bool take_step(strut_path_walk *walk) {
   bool landed, stopped, strayed;
   double place;
   do {
-    if (!strut_path_find_next(walk)) return end_path(walk, find_reason(walk));
+    if (!strut_path_find_next(walk))
+      return strut_path_leave_mechanism(walk, walk->y, walk->tangent[walk->system.n]) ||
+             end_path(walk, find_reason(walk));
     piece.length = length_ahead(walk);
     landed = land_on_end(walk), stopped = land_on_stop(walk, &piece);
     if (landed || stopped) piece.length = length_ahead(walk);
@@ -383,6 +425,7 @@ static bool take_step(strut_path_walk *walk) {
   }
   walk->bends = 0;
   strut_path_ray way;
+  if (leaves_at_turn(walk, &piece)) return !walk->failed;
   if (strut_path_find_criticals(walk, &piece, &way)) return go_on_along(walk, &way);
   advance(walk);
   strut_path_add_point(walk, walk->negative);
@@ -397,10 +440,49 @@ static bool take_step(strut_path_walk *walk) {
   return true;
 }
 
+void strut_path_end_within(strut_path_walk *walk, const double *unknowns, strut_path_end end) {
+  strut_path *path = walk->path;
+  walk->arc = walk->last_arc + strut_path_distance(walk, walk->last, unknowns);
+  while (path->point_count > 1 && path->points[path->point_count - 1].at.arc > walk->last_arc)
+    path->point_count--;
+  while (path->event_count > 0 && path->events[path->event_count - 1].at.arc > walk->arc)
+    path->event_count--;
+  memcpy(walk->y, unknowns, strut_path_bytes(walk));
+  strut_path_add_point(walk, path->points[path->point_count - 1].negative);
+  path->end = end;
+}
+
+/* Has the latest step led through the first point of the path, along the same tangent? */
+static bool is_closed(strut_path_walk *walk) {
+  strut_path_system *system = &walk->system;
+  const double *row = walk->first_tangent;
+  double place = strut_path_dot(walk, row, walk->first), step;
+  double before = strut_path_dot(walk, row, walk->last) - place,
+         after = strut_path_dot(walk, row, walk->y) - place;
+  step = strut_path_distance(walk, walk->last, walk->y);
+  if (walk->forks.path || system->parameter.options->friction || !(before < 0.0 && after >= 0.0) ||
+      strut_path_distance(walk, walk->first, walk->y) > 2.0 * step ||
+      strut_path_dot(walk, row, walk->tangent) < ALONG)
+    return false;
+  for (int32_t i = 0; i < 2 * (system->n + 1); i++)
+    walk->trial[i] = walk->last[i] + before / (before - after) * (walk->y[i] - walk->last[i]);
+  return strut_path_correct(system, row, place, walk->trial) >= 0 &&
+         strut_path_distance(walk, walk->trial, walk->first) <= NEARBY;
+}
+
 bool strut_path_walk_step(strut_path_walk *walk) {
+  memcpy(walk->last, walk->y, strut_path_bytes(walk));
+  memcpy(walk->last_tangent, walk->tangent, strut_path_bytes(walk) / 2);
+  walk->last_arc = walk->arc;
   bool on = take_step(walk);
   while (on && walk->bends) on = take_step(walk);
-  return on;
+  if (!on || walk->failed || !is_closed(walk)) return on;
+  strut_path_end_within(walk, walk->first, STRUT_PATH_CLOSED);
+  char at[STRUT_PATH_TEXT];
+  snprintf(walk->path->remark, sizeof walk->path->remark,
+           "closed path: it comes back to its first point, at %s",
+           strut_path_at(walk, strut_path_value(&walk->system, walk->first), at));
+  return false;
 }
 
 /*
@@ -416,12 +498,14 @@ static bool first_tangent(strut_path_walk *walk) {
 }
 
 /* Corrects the start to all digits: the descent that found y used doubles. */
-static void sharpen_start(strut_path_walk *walk) {
+static bool sharpen_start(strut_path_walk *walk, double most) {
+  double value = walk->y[walk->system.n];
   memcpy(walk->next, walk->y, strut_path_bytes(walk));
-  if (strut_path_correct(&walk->system, walk->upward, 0.0, walk->next) < 0) return;
-  if (strut_path_distance(walk, walk->next, walk->y) > NEARBY) return;
+  if (strut_path_correct(&walk->system, walk->upward, value, walk->next) < 0) return false;
+  if (strut_path_distance(walk, walk->next, walk->y) > most) return false;
   memcpy(walk->y, walk->next, strut_path_bytes(walk));
-  walk->y[walk->system.n] = walk->y[2 * walk->system.n + 1] = 0;
+  walk->y[walk->system.n] = value, walk->y[2 * walk->system.n + 1] = 0;
+  return true;
 }
 
 /* A contact that slides at once with another coefficient does so in a first step, which jumps. */
@@ -444,17 +528,16 @@ static void find_pieces(strut_path_system *system) {
   }
 }
 
-bool strut_path_walk_begin(strut_path_walk *walk) {
+bool strut_path_set_out(strut_path_walk *walk, double most) {
   strut_path_system *system = &walk->system;
   const double h = 1e-6;
-  if (strut_path_evaluate(system, walk->y)) find_pieces(system);
   system->lends = true;
   for (int32_t k = 0; k < strut_path_switch_count(system); k++) {
     double value = strut_path_switch_value(system, k, walk->y);
     if (isfinite(value)) strut_path_switch_set(system, k, value > -STRUT_PATH_EVEN * system->size);
   }
   if (strut_path_evaluate(system, walk->y)) strut_path_friction_begin(system);
-  sharpen_start(walk);
+  bool sharp = sharpen_start(walk, most);
   for (int round = 0; round < ROUNDS; round++) { /* switches at zero follow the path */
     bool changed = false;
     if (!first_tangent(walk)) continue;
@@ -470,9 +553,21 @@ bool strut_path_walk_begin(strut_path_walk *walk) {
     }
     if (!changed) break;
   }
-  if (!first_tangent(walk) || system->drifts) return end_path(walk, STRUT_PATH_LOST);
+  return first_tangent(walk) && !system->drifts && sharp;
+}
+
+bool strut_path_walk_begin(strut_path_walk *walk) {
+  strut_path_system *system = &walk->system;
+  if (strut_path_evaluate(system, walk->y)) find_pieces(system);
+  strut_path_set_out(walk, NEARBY);
+  bool leads = first_tangent(walk) && !system->drifts, leapt = false;
+  if (!system->drifts && (!leads || strut_path_works_on_mechanisms(walk)))
+    leapt = strut_path_leave_mechanism(walk, walk->y, 1.0);
+  if (!leads && !leapt) return end_path(walk, STRUT_PATH_LOST);
   strut_path_count_negative(walk);
-  strut_path_add_point(walk, walk->negative);
+  if (!leapt) strut_path_add_point(walk, walk->negative);
+  memcpy(walk->first, walk->y, strut_path_bytes(walk));
+  memcpy(walk->first_tangent, walk->tangent, strut_path_bytes(walk) / 2);
   const strut_path_stop *stop = &system->parameter.options->stop;
   if (!walk->failed && stop->given)
     system->stop_at = walk->path->points[0].at.q[stop->coordinate] + stop->displacement;
