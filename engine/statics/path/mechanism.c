@@ -16,24 +16,8 @@ static const double LEAPS[] = {1e-6, 1e-5, 1e-4, 1e-3}; /* of the range: such ch
 static const double STEADY = 1e-2;   /* of the largest force: what a leap may change */
 static const double ROUNDED = 1e-12; /* of stiffness times size: a force that is none */
 static const double RATE = 1e-9;     /* of the parameter: none */
-static const double WORKS = 1e-8;    /* of the load: a part that works on a motion */
 static const double NEARBY = 1e-3;  /* [units of y] between where a descent and the equations end */
 static const double NOTABLE = 1e-2; /* of the range: a part of the path that is noted */
-
-bool strut_path_works_on_mechanisms(strut_path_walk *walk) {
-  strut_path_system *system = &walk->system;
-  int32_t first = 0, count = strut_path_find_mechanisms(system, walk->y, &first);
-  double work = 0.0;
-  for (int32_t k = first; k < first + count; k++) {
-    double part = 0.0;
-    for (int32_t i = 0; i < system->n; i++)
-      part +=
-          system->latest.slope[i] * gsl_matrix_get(system->algebra.vectors, (size_t)i, (size_t)k);
-    work += part * part;
-  }
-  double load = strut_dot(system->latest.slope, system->latest.slope, system->n);
-  return count > 1 && work > WORKS * WORKS * load;
-}
 
 /* Do the forces at the latest place differ from those before by rounding and the small leap alone? */
 static bool are_forces_steady(const strut_path_system *system, const double *before) {

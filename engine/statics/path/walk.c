@@ -485,16 +485,9 @@ bool strut_path_walk_step(strut_path_walk *walk) {
   return false;
 }
 
-/*
- * The tangent at the start: with growing load; if only the load moves the structure, so that it
- * does work.
- */
+/* The tangent at the start, with growing load. */
 static bool first_tangent(strut_path_walk *walk) {
-  strut_path_system *system = &walk->system;
-  if (strut_path_tangent(system, walk->y, walk->upward, walk->tangent)) return true;
-  for (int32_t i = 0; i < system->n; i++) walk->trial[i] = -system->latest.slope[i];
-  walk->trial[system->n] = 0;
-  return strut_path_tangent(system, walk->y, walk->trial, walk->tangent);
+  return strut_path_tangent(&walk->system, walk->y, walk->upward, walk->tangent);
 }
 
 /* Corrects the start to all digits: the descent that found y used doubles. */
@@ -561,8 +554,7 @@ bool strut_path_walk_begin(strut_path_walk *walk) {
   if (strut_path_evaluate(system, walk->y)) find_pieces(system);
   strut_path_set_out(walk, NEARBY);
   bool leads = first_tangent(walk) && !system->drifts, leapt = false;
-  if (!system->drifts && (!leads || strut_path_works_on_mechanisms(walk)))
-    leapt = strut_path_leave_mechanism(walk, walk->y, 1.0);
+  if (!system->drifts && !leads) leapt = strut_path_leave_mechanism(walk, walk->y, 1.0);
   if (!leads && !leapt) return end_path(walk, STRUT_PATH_LOST);
   strut_path_count_negative(walk);
   if (!leapt) strut_path_add_point(walk, walk->negative);
