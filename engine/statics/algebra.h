@@ -45,6 +45,12 @@ double strut_remove_shares(const double *rows, size_t count, size_t n, double *v
 bool strut_solve_rows(gsl_matrix *matrix, gsl_vector *right, gsl_permutation *order,
                       gsl_vector *vector);
 
+/**
+ * The shortest x with A' x = right, for A of at least as many rows as columns, which becomes its left singular
+ * vectors; `right` becomes a y with x = A y. Singular values up to `cut` of the largest are none. False: out of memory.
+ */
+bool strut_shortest(gsl_matrix *matrix, double cut, gsl_vector *right, gsl_vector *vector);
+
 /* What statics needs of SPQR and ARPACK: a rank-revealing A E = Q R of a sparse matrix, and the lowest eigenpairs
  * of K x = z M x by shift-invert Lanczos.
  *

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <float.h>
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -241,4 +242,24 @@ bool strut_solve_rows(gsl_matrix *matrix, gsl_vector *right, gsl_permutation *or
   for (size_t i = 0; i < matrix->size1; i++)
     if (gsl_matrix_get(matrix, i, i) == 0.0) return false;
   return gsl_linalg_LU_solve(matrix, order, right, vector) == 0;
+}
+
+bool strut_shortest(gsl_matrix *matrix, double cut, gsl_vector *right, gsl_vector *vector) {
+  strut_arena arena = {0};
+  gsl_matrix *v = strut_arena_matrix(&arena, matrix->size2, matrix->size2);
+  gsl_vector *s = strut_arena_vector(&arena, matrix->size2),
+             *w = strut_arena_vector(&arena, matrix->size2);
+  bool good = v && s && w && gsl_linalg_SV_decomp(matrix, v, s, w) == 0;
+  for (int k = 0; k < 2 && good; k++) { /* V' right over the values: once for x, twice for y */
+    if (k == 0) gsl_blas_dgemv(CblasTrans, 1.0, v, right, 0.0, w);
+    for (size_t i = 0; i < matrix->size2; i++) {
+      double value = gsl_vector_get(s, i);
+      bool counts = value > cut * gsl_vector_get(s, 0);
+      gsl_vector_set(w, i, counts ? gsl_vector_get(w, i) / value : 0.0);
+    }
+    if (k == 0) gsl_blas_dgemv(CblasNoTrans, 1.0, matrix, w, 0.0, vector);
+    if (k == 1) gsl_blas_dgemv(CblasNoTrans, 1.0, v, w, 0.0, right);
+  }
+  strut_arena_free(&arena);
+  return good;
 }

@@ -23,25 +23,6 @@ static const double STILL = 1e-14;   /* of density times size: forces that are n
 static const double SETTLED = 1e-13; /* of shape and densities: they change no more */
 static const double EXACT = 1e-10;   /* of density times size: what rounding may leave */
 
-/* Pseudo-inverse times r for the transpose of a (rows >= columns): shortest x with a' x = r. */
-static bool shortest(gsl_matrix *matrix, const gsl_vector *vector, gsl_vector *other_vector) {
-  size_t columns = matrix->size2;
-  strut_arena arena = {0};
-  gsl_matrix *v = strut_arena_matrix(&arena, columns, columns);
-  gsl_vector *s = strut_arena_vector(&arena, columns), *w = strut_arena_vector(&arena, columns);
-  bool good = v && s && w && gsl_linalg_SV_decomp(matrix, v, s, w) == 0;
-  if (good) {
-    gsl_blas_dgemv(CblasTrans, 1.0, v, vector, 0.0, w);
-    for (size_t i = 0; i < columns; i++) {
-      double value = gsl_vector_get(s, i);
-      gsl_vector_set(w, i, value > CUT * gsl_vector_get(s, 0) ? gsl_vector_get(w, i) / value : 0.0);
-    }
-    gsl_blas_dgemv(CblasNoTrans, 1.0, matrix, w, 0.0, other_vector);
-  }
-  strut_arena_free(&arena);
-  return good;
-}
-
 /* Room for the eigenvectors of a matrix. */
 typedef struct eigen_room {
   gsl_matrix *matrix, *vectors;
@@ -210,7 +191,7 @@ static bool improve(joint *self, bool nearest) {
   deviation(self, self->away);
   gsl_vector_scale(self->force, -1.0);
   if (nearest) gsl_blas_dgemv(CblasTrans, 1.0, self->slope, self->away, 1.0, self->force);
-  bool good = shortest(self->slope, self->force, self->step);
+  bool good = strut_shortest(self->slope, CUT, self->force, self->step);
   if (nearest) gsl_vector_sub(self->step, self->away);
   for (size_t i = 0; i < 2 * scene->node_count && good; i++)
     if (self->row_of[i] >= 0)

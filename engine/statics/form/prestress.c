@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/form/parts.h"
 
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,8 +10,8 @@
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 /*
- * Weighted least squares under equations and lower bounds, by an active set. Steps are taken in the
- * null space of the equations, from a point that satisfies everything.
+ * Weighted least squares under equations and lower bounds, by an active set: from a point that satisfies everything
+ * towards the least sum with the active bounds kept, as far as the others allow.
  */
 
 enum { ROUNDS = 1000 };
@@ -20,127 +19,81 @@ enum { ROUNDS = 1000 };
 static const double CUT = 1e-11;  /* of the largest singular value */
 static const double ZERO = 1e-12; /* of a step, of a multiplier */
 
-/* Columns that A maps to nothing: (count, k); NULL: out of memory. */
-static gsl_matrix *null_space(int32_t rows, int32_t count, const double *equations,
-                              strut_arena *arena) {
-  size_t n = (size_t)count, m = (size_t)rows, tall = m > n ? m : n, k = 0;
-  gsl_matrix *matrix = strut_arena_matrix(arena, tall, n), *v = strut_arena_matrix(arena, n, n);
-  gsl_vector *vector = strut_arena_vector(arena, n), *w = strut_arena_vector(arena, n);
-  if (!matrix || !v || !vector || !w) return NULL;
-  for (size_t i = 0; i < m; i++)
-    for (size_t j = 0; j < n; j++) gsl_matrix_set(matrix, i, j, equations[i * n + j]);
-  gsl_linalg_SV_decomp(matrix, v, vector, w);
-  while (k < n && gsl_vector_get(vector, k) > CUT * gsl_vector_get(vector, 0)) k++;
-  gsl_matrix *basis = strut_arena_matrix(arena, n, n - k);
-  for (size_t i = 0; i < n && basis; i++)
-    for (size_t j = k; j < n; j++) gsl_matrix_set(basis, i, j - k, gsl_matrix_get(v, i, j));
-  return basis;
-}
-
-typedef struct problem {
-  size_t count, free; /* unknowns; columns of the basis in use */
-  const gsl_matrix *basis;
-  const double *weight, *low;
+typedef struct squares {
+  size_t rows, count;
+  const double *equations, *weight, *low;
   double *x;
   uint8_t *active;
-  gsl_matrix *system;
-  gsl_vector *right, *solution;
-  gsl_permutation *order;
-} problem;
+  gsl_matrix *matrix;         /* (count at least, rows) of x times weight; zero where active */
+  gsl_vector *right, *target; /* then the equations' multipliers; x times weight where it leads */
+} squares;
 
-/* The step (free) to the least sum with the active bounds kept, and their multipliers behind it. */
-static size_t find_step(problem *self) {
-  size_t size = self->free;
-  gsl_matrix_set_zero(self->system);
-  gsl_vector_set_zero(self->right);
-  for (size_t i = 0; i < self->count; i++) {
-    double square = self->weight[i] * self->weight[i];
-    for (size_t a = 0; a < self->free; a++) {
-      double za = gsl_matrix_get(self->basis, i, a);
-      *gsl_vector_ptr(self->right, a) -= square * self->x[i] * za;
-      for (size_t b = 0; b < self->free; b++)
-        *gsl_matrix_ptr(self->system, a, b) += square * za * gsl_matrix_get(self->basis, i, b);
+/* The point with the least sum; or, of `left`, the shortest step by which the equations hold again. */
+static bool find_target(squares *self, const double *left) {
+  gsl_matrix_set_zero(self->matrix);
+  for (size_t r = 0; r < self->rows; r++) {
+    double sum = left ? left[r] : 0.0;
+    for (size_t i = 0; i < self->count; i++) {
+      double entry = self->active[i] ? 0.0 : self->equations[r * self->count + i];
+      gsl_matrix_set(self->matrix, i, r, entry / self->weight[i]);
+      sum += left ? -self->equations[r * self->count + i] * self->x[i] : entry * self->x[i];
     }
-    if (!self->active[i]) continue;
-    for (size_t a = 0; a < self->free; a++) {
-      gsl_matrix_set(self->system, a, size, gsl_matrix_get(self->basis, i, a));
-      gsl_matrix_set(self->system, size, a, gsl_matrix_get(self->basis, i, a));
-    }
-    size++;
+    gsl_vector_set(self->right, r, sum);
   }
-  return size;
+  return strut_shortest(self->matrix, CUT, self->right, self->target);
 }
 
-static bool solve_step(problem *self, size_t size) {
-  gsl_matrix_view a = gsl_matrix_submatrix(self->system, 0, 0, size, size);
-  gsl_vector_view b = gsl_vector_subvector(self->right, 0, size);
-  gsl_vector_view x = gsl_vector_subvector(self->solution, 0, size);
-  gsl_permutation order = {size, self->order->data};
-  return strut_solve_rows(&a.matrix, &b.vector, &order, &x.vector);
-}
-
-static double step_component(const problem *self, size_t i) {
-  double sum = 0;
-  for (size_t a = 0; a < self->free; a++)
-    sum += gsl_matrix_get(self->basis, i, a) * gsl_vector_get(self->solution, a);
-  return sum;
-}
-
-/*
- * Steps as far as the bounds allow; a bound that stops the step becomes active. True: nothing
- * moved.
- */
-static bool advance_to_bound(problem *self) {
+/* Goes there as far as the bounds allow; a bound that stops it becomes active. True: nothing moved. */
+static bool advance_to_bound(squares *self) {
   double share = 1, most = 0, scale = 0;
   size_t stop = self->count;
-  for (size_t i = 0; i < self->count; i++) {
-    double step = step_component(self, i), room = self->low[i] - self->x[i];
-    most = fmax(most, fabs(step)), scale = fmax(scale, fabs(self->x[i]));
-    if (self->active[i] || !(step < 0) || !isfinite(room)) continue;
-    if (room / step < share) share = fmax(room / step, 0), stop = i;
-  }
-  for (size_t i = 0; i < self->count; i++) self->x[i] += share * step_component(self, i);
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < self->count; i++) {
+      double step = gsl_vector_get(self->target, i) / self->weight[i] - self->x[i],
+             room = self->low[i] - self->x[i];
+      if (self->active[i]) continue;
+      if (pass == 1) self->x[i] += share * step;
+      most = fmax(most, fabs(step)), scale = fmax(scale, fabs(self->x[i]));
+      if (pass == 0 && step < 0 && room / step < share) share = fmax(room / step, 0), stop = i;
+    }
   if (stop < self->count) self->active[stop] = 1, self->x[stop] = self->low[stop];
   return stop == self->count && most <= ZERO * scale;
 }
 
 /* Releases the active bound with the worst multiplier; false if all signs are right. */
-static bool release_bound(problem *self) {
-  size_t at = self->free, worst = self->count;
+static bool release_bound(squares *self) {
+  size_t worst = self->count;
   double least = 0, scale = 0;
   for (size_t i = 0; i < self->count; i++) {
-    if (!self->active[i]) continue;
-    double multiplier = gsl_vector_get(self->solution, at++);
-    scale = fmax(scale, fabs(multiplier));
-    if (multiplier > least) least = multiplier, worst = i;
+    double slope = self->weight[i] * self->weight[i] * self->x[i];
+    scale = fmax(scale, fabs(slope));
+    for (size_t r = 0; r < self->rows; r++)
+      slope -= self->equations[r * self->count + i] * gsl_vector_get(self->right, r);
+    if (self->active[i] && slope < least) least = slope, worst = i;
   }
-  if (worst == self->count || least <= ZERO * scale) return false;
+  if (worst == self->count || least >= -ZERO * scale) return false;
   self->active[worst] = 0;
   return true;
 }
 
 bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
                            const double *weight, const double *low, double *vector) {
-  size_t n = (size_t)count;
+  size_t n = (size_t)count, m = (size_t)rows, tall = m > n ? m : n;
   strut_arena arena = {0};
-  gsl_matrix *basis = null_space(rows, count, equations, &arena);
-  problem p = {.count = n,
-               .free = basis ? basis->size2 : 0,
-               .basis = basis,
-               .weight = weight,
-               .low = low,
-               .x = vector};
-  size_t room = p.free + n + 1;
-  p.active = strut_arena_allocate(&arena, n, 1);
-  p.system = strut_arena_matrix(&arena, room, room);
-  p.right = strut_arena_vector(&arena, room);
-  p.solution = strut_arena_vector(&arena, room);
-  p.order = strut_arena_order(&arena, room);
-  bool good = basis && p.active && p.system && p.right && p.solution && p.order;
-  for (int k = 0; k < ROUNDS && good && p.free > 0; k++) {
-    if (!solve_step(&p, find_step(&p))) break;
-    if (advance_to_bound(&p) && !release_bound(&p)) break;
+  squares s = {m, n, equations, weight, low, vector, NULL, NULL, NULL, NULL};
+  s.active = strut_arena_allocate(&arena, n, 1);
+  s.matrix = strut_arena_matrix(&arena, tall, m);
+  s.right = strut_arena_vector(&arena, m);
+  s.target = strut_arena_vector(&arena, tall);
+  double *sum = strut_arena_allocate(&arena, m, sizeof *sum);
+  bool good = s.active && s.matrix && s.right && s.target && sum;
+  for (size_t r = 0; r < m && good; r++) sum[r] = strut_dot(equations + r * n, vector, count);
+  for (int k = 0; k < ROUNDS && good; k++) {
+    good = find_target(&s, NULL);
+    if (good && advance_to_bound(&s) && !release_bound(&s)) break;
   }
+  good = good && find_target(&s, sum);
+  for (size_t i = 0; i < n && good; i++) vector[i] += gsl_vector_get(s.target, i) / weight[i];
   strut_arena_free(&arena);
   return good;
 }
