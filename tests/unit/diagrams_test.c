@@ -227,7 +227,7 @@ TEST(map) {
   strut_error error;
   assert_int_equal(strut_canvas_open_pixels(400, 300, 1, &canvas, &error), STRUT_OK);
   assert_true(strut_panels_settle(&panel, 1, &arena));
-  assert_true(strut_draw_chart(canvas, (strut_box){0, 0, 400, 300}, &panel, true, &arena));
+  assert_true(strut_draw_panel(canvas, (strut_box){0, 0, 400, 300}, &panel, true, &arena));
   strut_arena_free(&arena);
   const unsigned char *low_left = pixel(canvas, 120, 220), *low_right = pixel(canvas, 320, 220);
   const unsigned char *high_left = pixel(canvas, 120, 80), *high_right = pixel(canvas, 320, 80);

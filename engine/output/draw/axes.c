@@ -213,9 +213,26 @@ static double axis_fraction(const strut_axis *axis, double value) {
   return (value - axis->low) / (axis->high - axis->low);
 }
 
-void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]) {
-  point[0] = axes->frame.x + axes->frame.width * axis_fraction(&axes->x, x);
-  point[1] = axes->frame.y + axes->frame.height * (1.0 - axis_fraction(&axes->y, y));
+void strut_axes_point(const strut_axes *axes, const double place[2], double point[2]) {
+  point[0] = axes->frame.x + axes->frame.width * axis_fraction(&axes->x, place[0]);
+  point[1] = axes->frame.y + axes->frame.height * (1.0 - axis_fraction(&axes->y, place[1]));
+}
+
+strut_axes strut_view_axes(strut_box box, const strut_panel *view) {
+  const strut_bounds *b = &view->bounds;
+  double size[2] = {b->high[0] - b->low[0], b->high[1] - b->low[1]};
+  double arrows = strut_view_arrows(view);
+  double room[2] = {fmax(box.width - 2 * view->margin, 1),
+                    fmax(box.height - arrows - 2 * view->margin, 1)};
+  bool empty = !(size[0] >= 0 && size[1] >= 0);
+  double x = empty ? 0 : b->low[0] + 0.5 * size[0], y = empty ? 0 : b->low[1] + 0.5 * size[1];
+  double scale = fmin(room[0] / size[0], room[1] / size[1]);
+  if (empty || !(scale < HUGE_VAL)) scale = fmin(room[0], room[1]); /* a single point: 1 m wide */
+  double half = 0.5 * box.width / scale, top = y + 0.5 * (box.height - arrows) / scale;
+  return (strut_axes){.x = {.low = x - half, .high = x + half},
+                      .y = {.low = top - box.height / scale, .high = top},
+                      .frame = box,
+                      .scale = scale};
 }
 
 /* The label below the middle of the frame; a long one ends where the axes do, and is shortened if need be. */
@@ -234,7 +251,7 @@ static void draw_tick(strut_canvas *canvas, const strut_axes *axes, int d, doubl
   const strut_pen grid = {.colour = strut_grey(0.9), .width = 0.4, .butt = true};
   const strut_pen tick = {.colour = strut_grey(0.25), .width = 0.6, .butt = true};
   double at[2], bottom = box->y + box->height, length = text ? TICK : 0.6 * TICK;
-  strut_axes_point(axes, d ? axes->x.low : value, d ? value : axes->y.low, at);
+  strut_axes_point(axes, (const double[2]){d ? axes->x.low : value, d ? value : axes->y.low}, at);
   if (text && d) strut_draw_segment(canvas, box->x, at[1], box->x + box->width, at[1], grid);
   if (text && !d) strut_draw_segment(canvas, at[0], box->y, at[0], bottom, grid);
   strut_draw_segment(canvas, at[0], at[1], at[0] - d * length, at[1] + (1 - d) * length, tick);
@@ -337,6 +354,11 @@ static bool settle_scale(const strut_panel *panels, size_t count, strut_colour_s
   return true;
 }
 
+static void include_point(strut_bounds *bounds, const strut_point *point) {
+  const double place[2] = {point->x, point->y};
+  if (isfinite(point->x + point->y)) strut_bounds_widen(bounds, place, place);
+}
+
 /* All views show what any of them has to. */
 static void settle_views(strut_panel *panels, size_t count) {
   strut_bounds all = strut_bounds_none();
@@ -348,9 +370,9 @@ static void settle_views(strut_panel *panels, size_t count) {
     }
     for (size_t i = 0; i < panel->shape_count; i++)
       strut_bounds_add(&all, panel->shapes[i].model, panel->shapes[i].q);
-    for (size_t i = 0; i < panel->trail_count; i++)
-      for (size_t k = 0; k < panel->trails[i].count; k++)
-        strut_bounds_widen(&all, panel->trails[i].at[k], panel->trails[i].at[k]);
+    for (size_t i = 0; i < panel->series_count; i++)
+      for (size_t k = 0; k < panel->series[i].count; k++)
+        include_point(&all, &panel->series[i].points[k]);
   }
   for (size_t i = 0; i < count; i++) panels[i].bounds = all;
 }

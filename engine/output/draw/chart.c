@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The chart of a panel: legend, bands, axes, cells, lines, points, marks. */
+/* A panel: legend, bands, axes, cells, or structures; lines, points, marks. */
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
@@ -44,7 +44,7 @@ static strut_pen pen_of(const strut_panel *panel, size_t i) {
 
 static bool has_markers(const strut_panel *panel, const strut_series *series) {
   return !series->unmarked && panel->series_count > 1 && !(series->pen.width > 0) &&
-         !series->cloud && !(series->bar > 0);
+         series->kind == STRUT_SERIES_LINE && !(series->bar > 0);
 }
 
 /* ---- the cells of a map ---- */
@@ -106,9 +106,10 @@ void strut_panel_legend(const strut_panel *panel, strut_figure *legend) {
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
     strut_key_sign sign = panel->series[i].bar > 0 ? STRUT_KEY_AREA : STRUT_KEY_LINE;
-    if (panel->series[i].cloud) sign = STRUT_KEY_DOT;
+    bool dots = panel->series[i].kind == STRUT_SERIES_DOTS;
+    if (dots) sign = STRUT_KEY_DOT;
     add_item(legend, (strut_key_item){.sign = sign,
-                                      .pen = panel->series[i].cloud ? (strut_pen){.width = 0} : pen,
+                                      .pen = dots ? (strut_pen){.width = 0} : pen,
                                       .fill = {.colour = pen.colour},
                                       .marked = has_markers(panel, &panel->series[i]),
                                       .look = look_of(panel, i),
@@ -149,7 +150,7 @@ static void place(const chart *self, const line *l, size_t k, double at[2]) {
   at[0] = at[1] = (double)NAN;
   if (!isfinite(p->x) || !isfinite(p->y)) return;
   if (self->axes.x.logarithmic && !(p->x > 0)) return;
-  strut_axes_point(&self->axes, p->x, zero ? self->axes.y.high : p->y, at);
+  strut_axes_point(&self->axes, (const double[2]){p->x, zero ? self->axes.y.high : p->y}, at);
   if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
 }
 
@@ -176,7 +177,7 @@ static void find_area(line *l) {
 static void place_line(const chart *self, line *l) {
   const strut_series *series = l->series;
   size_t used = 0, start = 0;
-  bool whole = false;
+  bool whole = series->kind == STRUT_SERIES_SEQUENCE;
   for (size_t k = 0; k < series->count; k++) whole = whole || series->points[k].unstable;
   for (size_t k = 0; k <= series->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
@@ -202,7 +203,7 @@ static bool place_lines(chart *self) {
     if (!l->at) return false;
     if (l->series->bar > 0) continue;
     place_line(self, l);
-    if (!l->series->cloud && !(l->series->pen.width > 0)) find_area(l);
+    if (l->series->kind == STRUT_SERIES_LINE && !(l->series->pen.width > 0)) find_area(l);
   }
   return self->lines != NULL;
 }
@@ -212,8 +213,8 @@ static bool place_lines(chart *self) {
 /* The box between two places of the axes. */
 static strut_box box_between(const strut_axes *axes, const double from[2], const double to[2]) {
   double a[2], b[2];
-  strut_axes_point(axes, from[0], from[1], a);
-  strut_axes_point(axes, to[0], to[1], b);
+  strut_axes_point(axes, from, a);
+  strut_axes_point(axes, to, b);
   return (strut_box){a[0], b[1], b[0] - a[0], a[1] - b[1]};
 }
 
@@ -280,7 +281,8 @@ static void draw_bars(const chart *self, const line *l) {
   double ends[2][2];
   for (size_t k = 0; k < l->series->count; k++) {
     place(self, l, k, ends[1]);
-    strut_axes_point(&self->axes, l->series->points[k].x, y->logarithmic ? y->low : 0, ends[0]);
+    const double foot[2] = {l->series->points[k].x, y->logarithmic ? y->low : 0};
+    strut_axes_point(&self->axes, foot, ends[0]);
     if (isfinite(ends[1][1])) strut_draw_line(self->canvas, (const double(*)[2])ends, 2, pen);
   }
 }
@@ -301,8 +303,8 @@ static void draw_whiskers(const chart *self, const line *l) {
     double ends[2][2];
     if (!isfinite(p->low) || !isfinite(p->high)) continue;
     if (self->axes.y.logarithmic && !(p->low > 0)) continue;
-    strut_axes_point(&self->axes, p->x, p->low, ends[0]);
-    strut_axes_point(&self->axes, p->x, p->high, ends[1]);
+    strut_axes_point(&self->axes, (const double[2]){p->x, p->low}, ends[0]);
+    strut_axes_point(&self->axes, (const double[2]){p->x, p->high}, ends[1]);
     strut_draw_line(self->canvas, (const double(*)[2])ends, 2, bar);
     for (int e = 0; e < 2; e++)
       strut_draw_segment(self->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
@@ -315,7 +317,7 @@ static void draw_point(const chart *self, const line *l, size_t k) {
   double at[2];
   place(self, l, k, at);
   if (!isfinite(at[0]) || !is_inside(self, at)) return;
-  if (!l->series->cloud) {
+  if (l->series->kind != STRUT_SERIES_DOTS) {
     strut_draw_marker(self->canvas, l->look, at[0], at[1], MARKER);
     return;
   }
@@ -328,8 +330,8 @@ static void draw_point(const chart *self, const line *l, size_t k) {
 /* Whole points, on the frame too. */
 static void draw_points(const chart *self, const line *l) {
   const strut_series *series = l->series;
-  bool all = series->cloud || series->count <= FEW_POINTS;
-  if (!series->cloud && (!has_markers(self->panel, series) || (!all && !series->label))) return;
+  bool dots = series->kind == STRUT_SERIES_DOTS, all = dots || series->count <= FEW_POINTS;
+  if (!dots && (!has_markers(self->panel, series) || (!all && !series->label))) return;
   /* A few markers, at other points than those of the other curves. */
   size_t every = all ? 1 : series->count / MARKERS;
   size_t first = all ? 0 : (l->look * every / 3 + every / 2) % every;
@@ -391,7 +393,8 @@ static void draw_mark(const chart *self, const strut_label *mark) {
   const strut_axes *axes = &self->axes;
   bool above = mark->at[1] > axes->y.high, below = mark->at[1] < axes->y.low;
   strut_label label = *mark;
-  strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), label.at);
+  label.at[1] = fmin(fmax(mark->at[1], axes->y.low), axes->y.high);
+  strut_axes_point(axes, label.at, label.at);
   if (!is_inside(self, label.at)) return;
   label.inside = axes->frame;
   if (above || below) {
@@ -423,10 +426,57 @@ static void mark_beyond(const chart *self) {
   draw_note(self, strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text));
 }
 
-static void draw_data(const chart *self) {
+/* Dark to bright; a path that is no longer than a dot is not drawn. */
+static void draw_sequence(const chart *self, const line *l) {
+  enum { SHADES = 64 };
+  const double dot = 0.3; /* [pt] */
+  size_t all = l->count > 2 ? l->count - 2 : 0;
+  double farthest = 0;
+  for (size_t k = 0; k <= all; k++) farthest = fmax(farthest, strut_distance(l->at[k], l->at[0]));
+  for (size_t shade = 0; shade < SHADES && farthest > dot; shade++) {
+    size_t first = shade * all / SHADES, last = (shade + 1) * all / SHADES;
+    strut_pen pen = l->pen;
+    pen.colour = strut_palette_at(STRUT_COLOURS_SEQUENTIAL, (double)shade, 0, SHADES - 1);
+    if (last > first)
+      strut_draw_line(self->canvas, (const double(*)[2])l->at + first, last - first + 1, pen);
+  }
+}
+
+/* An arrow ends before the node at its tip; one that is no longer than that is not drawn. */
+static void draw_arrow(const chart *self, const line *l) {
+  const double node = 2.5; /* of a node as drawn [pt] */
+  if (l->count < 3) return;
+  const double *from = l->at[0], *to = l->at[l->count - 2];
+  double x = to[0] - from[0], y = to[1] - from[1], length = hypot(x, y);
+  double end = length > 3 * node ? node / length : 0;
+  if (length >= 2 * node)
+    strut_draw_arrow(self->canvas, from[0], from[1], to[0] - end * x, to[1] - end * y, 5, l->pen);
+}
+
+/* All series but dots, within the frame. */
+static void draw_lines(const chart *self) {
+  static void (*const draw[])(const chart *self, const line *l) = {
+      [STRUT_SERIES_LINE] = draw_line,
+      [STRUT_SERIES_SEQUENCE] = draw_sequence,
+      [STRUT_SERIES_ARROW] = draw_arrow};
+  strut_canvas_clip(self->canvas, self->axes.frame);
+  for (const line *l = self->lines; l < self->lines + self->panel->series_count; l++)
+    if (l->series->kind != STRUT_SERIES_DOTS) {
+      (l->series->bar > 0 ? draw_bars : draw[l->series->kind])(self, l);
+      draw_whiskers(self, l);
+    }
+  strut_canvas_unclip(self->canvas);
+}
+
+/* The dots, or the markers of the lines. */
+static void draw_all_points(const chart *self, bool dots) {
+  for (const line *l = self->lines; l < self->lines + self->panel->series_count; l++)
+    if ((l->series->kind == STRUT_SERIES_DOTS) == dots) draw_points(self, l);
+}
+
+static void draw_chart(const chart *self) {
   const strut_panel *panel = self->panel;
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
-  const line *end = self->lines + panel->series_count;
   bool areas = false;
   strut_canvas_clip(self->canvas, self->axes.frame);
   draw_bands(self);
@@ -435,27 +485,40 @@ static void draw_data(const chart *self) {
   strut_canvas_clip(self->canvas, self->axes.frame);
   if (panel->map) draw_map(self);
   strut_canvas_unclip(self->canvas);
-  for (const line *l = self->lines; l < end; l++)
-    if (l->series->cloud) draw_points(self, l);
-  strut_canvas_clip(self->canvas, self->axes.frame);
-  for (const line *l = self->lines; l < end; l++)
-    if (!l->series->cloud)
-      (l->series->bar > 0 ? draw_bars : draw_line)(self, l), draw_whiskers(self, l);
-  strut_canvas_unclip(self->canvas);
+  draw_all_points(self, true);
+  draw_lines(self);
   if (panel->map) strut_draw_box(self->canvas, self->axes.frame, NULL, &frame);
-  for (const line *l = self->lines; l < end; l++)
-    if (!l->series->cloud) draw_points(self, l);
+  draw_all_points(self, false);
   if (panel->outliers) mark_beyond(self);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(self, &panel->marks[i]);
   if (panel->remark) draw_note(self, panel->remark);
-  for (const line *l = self->lines; l < end; l++) areas = areas || l->area;
+  for (size_t i = 0; i < panel->series_count; i++) areas = areas || self->lines[i].area;
   if (areas) draw_note(self, "areas: ranges of oscillations");
 }
 
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
+/* Structures, lines and marks in their plane. */
+static void draw_view(const chart *self) {
+  const strut_panel *view = self->panel;
+  const strut_box *box = &self->axes.frame;
+  strut_canvas_clip(self->canvas, *box);
+  strut_draw_shapes(self->canvas, &self->axes, view);
+  draw_lines(self);
+  for (size_t i = 0; i < view->mark_count; i++) draw_mark(self, &view->marks[i]);
+  strut_canvas_unclip(self->canvas);
+  strut_draw_names(self->canvas, &self->axes, view);
+  if (view->yardstick)
+    strut_draw_yardstick(self->canvas, box->x, box->y + box->height, box->width, self->axes.scale);
+}
+
+bool strut_draw_panel(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena) {
   chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_figure key = {0};
+  if (panel->shape_count) {
+    c.axes = strut_view_axes(box, panel);
+    if (place_lines(&c)) draw_view(&c);
+    return c.lines != NULL;
+  }
   if (legend) strut_panel_legend(panel, &key);
   c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
   const strut_box place = {c.axes.frame.x + PADDING, box.y + PADDING,
@@ -466,6 +529,6 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   box.y += above, box.height -= above;
   c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
   if (key.failed || !place_lines(&c)) return false;
-  draw_data(&c);
+  draw_chart(&c);
   return true;
 }

@@ -132,11 +132,8 @@ static double put_row(page *self, strut_canvas *canvas, strut_box box, const gro
     const strut_panel *panel = &of->panels[i];
     const strut_box below = {box.x, box.y + caption, box.width, height};
     put_caption(canvas, box, panel, true);
-    if (panel->shape_count)
-      self->scale = strut_draw_view(canvas, below, panel).scale;
-    else
-      *fine =
-          strut_draw_chart(canvas, below, panel, !self->figure->one_legend, &self->figure->arena);
+    *fine = strut_draw_panel(canvas, below, panel, !self->figure->one_legend, &self->figure->arena);
+    if (panel->shape_count) self->scale = strut_view_axes(below, panel).scale;
   }
   return caption + height;
 }

@@ -44,15 +44,22 @@ typedef struct strut_point {
   bool unstable;    /* the line from here on is dashed and thinner */
 } strut_point;
 
-/** Points joined by a line, or a cloud of dots. */
+typedef enum strut_series_kind {
+  STRUT_SERIES_LINE,
+  STRUT_SERIES_DOTS,     /* in the look's colour where the panel has no scale */
+  STRUT_SERIES_SEQUENCE, /* a line dark to bright, as wide as its pen */
+  STRUT_SERIES_ARROW     /* from the first to the last point */
+} strut_series_kind;
+
+/** Points of a chart or of the plane. */
 typedef struct strut_series {
+  strut_series_kind kind;
   const char *label; /* in the legend, where equal ones get one row; NULL: not there */
   size_t count;
   strut_point *points; /* (count) */
   int look;            /* index of colour, dashes and marker; -1: the series' own index */
   strut_pen pen;       /* replaces the look's line; width 0: the look */
-  bool cloud;    /* dots instead of a line; in the look's colour where the panel has no scale */
-  double bar;    /* bars from 0 instead of a line, so wide along x; 0: none */
+  double bar;          /* bars from 0 instead of a line, so wide along x; 0: none */
   bool unmarked; /* else markers tell it from others: at every point of few, at some of many */
 } strut_series;
 
@@ -88,29 +95,14 @@ typedef struct strut_shape {
   double force_limit;        /* their scale [N] */
 } strut_shape;
 
-typedef enum strut_trail_kind {
-  STRUT_TRAIL_LINE,     /* by its pen */
-  STRUT_TRAIL_SEQUENCE, /* dark to bright, as wide as its pen */
-  STRUT_TRAIL_ARROW     /* from the first to the last point */
-} strut_trail_kind;
-
-/** A line through points of the plane, above the shapes. */
-typedef struct strut_trail {
-  strut_trail_kind kind;
-  size_t count;
-  double (*at)[2]; /* (count) [m] */
-  strut_pen pen;
-} strut_trail;
-
 /* ---- both ---- */
 
 typedef struct strut_panel {
   const char *title, *note; /* above it, the note in grey; may be NULL */
-  /* A view: structures in a window with one scale for x and y. */
-  size_t shape_count, trail_count;
+  /* A view: structures with one scale for x and y, the series above them. */
+  size_t shape_count;
   strut_shape *shapes;
-  strut_trail *trails;
-  strut_bounds bounds; /* what has to be seen [m]; all zero: shapes and trails */
+  strut_bounds bounds; /* what has to be seen [m]; all zero: shapes and series */
   double margin;       /* around it, for names and arrows [pt] */
   bool yardstick;      /* a scale bar at its foot */
   /* Else a chart. A range of NAN is found from the data. */
@@ -179,13 +171,12 @@ STRUT_API strut_shape *strut_add_ghost(strut_figure *figure, strut_panel *panel,
 STRUT_API strut_shape *strut_add_forces(strut_figure *figure, strut_panel *panel,
                                         const strut_model *model, const double *positions,
                                         const double *force, double limit);
-STRUT_API strut_trail *strut_add_trail(strut_figure *figure, strut_panel *panel,
-                                       strut_trail_kind kind, strut_pen pen);
-STRUT_API void strut_add_place(strut_figure *figure, strut_trail *trail, const double place[2]);
+/** A series of that kind, with a pen of its own and without label. */
+STRUT_API strut_series *strut_add_line(strut_figure *figure, strut_panel *panel,
+                                       strut_series_kind kind, strut_pen pen);
 /** One of two points. */
-STRUT_API strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel,
-                                         strut_trail_kind kind, strut_pen pen, const double from[2],
-                                         const double to[2]);
+STRUT_API void strut_add_segment(strut_figure *figure, strut_panel *panel, strut_series_kind kind,
+                                 strut_pen pen, const double from[2], const double to[2]);
 /** Arrows from where a shape was to its nodes, unless there are many, and their key. */
 STRUT_API void strut_add_displacements(strut_figure *figure, strut_panel *panel,
                                        const strut_model *model, const double *from,

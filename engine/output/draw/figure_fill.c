@@ -94,24 +94,19 @@ strut_shape *strut_add_forces(strut_figure *figure, strut_panel *panel, const st
   return shape;
 }
 
-strut_trail *strut_add_trail(strut_figure *figure, strut_panel *panel, strut_trail_kind kind,
+strut_series *strut_add_line(strut_figure *figure, strut_panel *panel, strut_series_kind kind,
                              strut_pen pen) {
-  strut_trail *trail = ADD(figure, panel->trails, panel->trail_count);
-  trail->kind = kind;
-  trail->pen = pen;
-  return trail;
+  strut_series *series = strut_add_series(figure, panel, NULL);
+  series->kind = kind;
+  series->pen = pen;
+  return series;
 }
 
-void strut_add_place(strut_figure *figure, strut_trail *trail, const double place[2]) {
-  memcpy(ADD(figure, trail->at, trail->count), place, sizeof *trail->at);
-}
-
-strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel, strut_trail_kind kind,
-                               strut_pen pen, const double from[2], const double to[2]) {
-  strut_trail *trail = strut_add_trail(figure, panel, kind, pen);
-  strut_add_place(figure, trail, from);
-  strut_add_place(figure, trail, to);
-  return trail;
+void strut_add_segment(strut_figure *figure, strut_panel *panel, strut_series_kind kind,
+                       strut_pen pen, const double from[2], const double to[2]) {
+  strut_series *series = strut_add_line(figure, panel, kind, pen);
+  strut_add_point(figure, series, from[0], from[1]);
+  strut_add_point(figure, series, to[0], to[1]);
 }
 
 void strut_add_displacements(strut_figure *figure, strut_panel *panel, const strut_model *model,
@@ -120,7 +115,7 @@ void strut_add_displacements(strut_figure *figure, strut_panel *panel, const str
   const strut_pen pen = {.colour = strut_palette_thing(2), .width = 0.8};
   if (model->node_count <= MOST) strut_add_key(figure, STRUT_KEY_ARROW, pen, "displacement");
   for (int32_t i = 0; i < model->node_count && model->node_count <= MOST; i++)
-    strut_add_segment(figure, panel, STRUT_TRAIL_ARROW, pen, from + 2 * i, to + 2 * i);
+    strut_add_segment(figure, panel, STRUT_SERIES_ARROW, pen, from + 2 * i, to + 2 * i);
 }
 
 strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
@@ -251,7 +246,7 @@ static const strut_point none;
   X("label", "", TEXT(s->label), "in the legend")                                                  \
   X("x", "", OF_POINTS(x), "in the axis's unit")                                                   \
   X("y", "", OF_POINTS(y), "null: a gap")                                                          \
-  X("dots", "", IF(s->cloud, FLAG(true)), "not joined by lines")                                   \
+  X("dots", "", IF(s->kind == STRUT_SERIES_DOTS, FLAG(true)), "not joined by lines")               \
   X("bar", "", IF(s->bar > 0, NUMBER(s->bar)), "the width of bars from 0, along x")                \
   X("low", "", IF(any(s, 1), OF_POINTS(low)), "ends of whiskers")                                  \
   X("high", "", IF(any(s, 1), OF_POINTS(high)), "ends of whiskers")                                \
@@ -306,12 +301,16 @@ static strut_value member_ends(const strut_result_object *of, size_t k) {
     "that they are coloured by")
 STRUT_VALUES_HERE(shape_values, SHAPE, const strut_shape *s = of->at)
 
-#define TRAIL(X) X("points", "m", TABLE(t->at, t->count, 2), "a line in the plane")
-STRUT_VALUES_HERE(trail_values, TRAIL, const strut_trail *t = of->at)
+static strut_value place(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_NUMBERS(&((const strut_series *)of->at)->points[i].x, 2);
+}
+
+#define TRAIL(X) X("points", "m", ARRAY(s->count, place), "a line in the plane")
+STRUT_VALUES_HERE(trail_values, TRAIL, const strut_series *s = of->at)
 
 #define VIEW(X)                                                                                    \
   X("shapes", "", LIST(p->shapes, p->shape_count), "the lowest first", .rows = &shape_values)      \
-  X("trails", "", LIST(p->trails, p->trail_count), "lines over them", .rows = &trail_values)
+  X("trails", "", LIST(p->series, p->series_count), "lines over them", .rows = &trail_values)
 STRUT_VALUES_HERE(view_values, VIEW, const strut_panel *p = of->at)
 
 #define SCALE(X)                                                                                   \

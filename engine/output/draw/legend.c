@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What explains a figure: keys, markers of series, scales of colours, marks of what lies beyond them. */
+/* What explains a figure: keys, markers of series, scales, marks of what lies beyond them. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -40,7 +40,20 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
                      &(strut_pen){.colour = strut_grey(1), .width = 0.4});
 }
 
-/* ---- scales of colours ---- */
+/* ---- scales ---- */
+
+void strut_draw_yardstick(strut_canvas *canvas, double left, double bottom, double width,
+                          double scale) {
+  double length = strut_round_below(0.3 * width / scale);
+  double x = left + 3, y = bottom - 4, end = x + length * scale;
+  const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
+  if (!isfinite(length) || !(length > 0)) return;
+  strut_draw_segment(canvas, x, y, end, y, pen);
+  strut_draw_segment(canvas, x, y - 2, x, y + 2, pen);
+  strut_draw_segment(canvas, end, y - 2, end, y + 2, pen);
+  strut_draw_text(canvas, 0.5 * (x + end), y - 2, strut_quantity_of(length, 3, "m").text,
+                  (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
+}
 
 static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2; /* [pt] */
 

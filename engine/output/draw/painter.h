@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** What the files of the painter share: labels, axes, keys, charts, views. For these files and their tests. */
+/** What the files of the painter share: labels, axes, keys, panels. For these files and their tests. */
 #pragma once
 
 #include "engine/base/memory.h"
@@ -49,19 +49,22 @@ typedef struct strut_tick_set {
 /** Fills `set` with about `wanted` ticks. */
 void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
 
-/** A pair of axes laid out in a box. */
+/** Where a panel's values or the plane are on the page. */
 typedef struct strut_axes {
   strut_axis x, y; /* ranges settled */
   strut_box frame; /* where data go [pt] */
-  double ticks;    /* height of the texts below it [pt] */
+  double scale;    /* of a view [pt/m] */
+  double ticks;    /* height of the texts below a chart [pt] */
   bool upwards;    /* they are names too wide to stand side by side */
 } strut_axes;
 /** Lays out a frame for settled axes in `box`; panels side by side line up when their boxes do. */
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y);
+/** Those of the plane in `box`: a view's bounds with its margin around them and forces of the ground below. */
+strut_axes strut_view_axes(strut_box box, const strut_panel *view);
 /** Frame, ticks, faint grid and labels: before the data, so that these lie above the grid. */
 void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes);
-/** Maps a pair of values to the page. */
-void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
+/** Maps a pair of values, or a point of the plane, to the page. */
+void strut_axes_point(const strut_axes *axes, const double place[2], double point[2]);
 
 /* ---- what explains (legend.c) ---- */
 
@@ -73,6 +76,9 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
  */
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                          size_t count, bool draw);
+/** A scale bar with its length, such as "20 mm", at the lower left corner of a view so wide [pt], at its scale [pt/m]. */
+void strut_draw_yardstick(strut_canvas *canvas, double left, double bottom, double width,
+                          double scale);
 /** Draws a scale of colours with its ticks below and its name above. */
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale);
 #define STRUT_SCALE_HEIGHT 34.0
@@ -86,8 +92,8 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
 /** Adds what a panel's legend says to the keys of `legend`, unless it is there already. */
 void strut_panel_legend(const strut_panel *panel, strut_figure *legend);
-/** Draws a chart with settled axes in a box, with its legend or without. False: out of memory. */
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
+/** Draws a panel with settled axes in a box, a chart with its legend or without. False: out of memory. */
+bool strut_draw_panel(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena);
 /** Limits of a map's cells along x or y. */
 void strut_map_limits(const double *at, size_t count, double limits[2]);
@@ -97,32 +103,15 @@ void strut_map_limits(const double *at, size_t count, double limits[2]);
  */
 size_t strut_thin(double (*points)[2], size_t count, double grain);
 
-/* ---- views, panels with structures (structure.c, view.c) ---- */
+/* ---- structures (structure.c) ---- */
 
-/** A window onto the plane: the same scale in x and y, centred in its box. */
-typedef struct strut_window {
-  strut_box box;    /* on the page [pt] */
-  double scale;     /* [pt/m] */
-  double left, top; /* the plane's x and y at the box's upper left corner [m] */
-} strut_window;
-/** The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows. */
-strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin);
-/** Maps a point of the plane [m] to the page [pt]. */
-void strut_window_point(const strut_window *window, const double position[2], double point[2]);
 /**
- * Members, nodes, supports, cells (filled), hinges (an arc from arm to arm), stops that act (a bar across
- * their member), masses on members (filled circles) and forces of the ground. Widths adapt to how many there are.
+ * Draws grounds, then shapes: members, nodes, supports, cells (filled), hinges (an arc from arm to arm), stops that act
+ * (a bar across their member), masses on members (filled circles) and forces of the ground. Widths adapt to how many
+ * there are.
  */
-void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
-/** Names of its nodes and, where the style says so, its members; none where there are more than 60 nodes. */
-void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
-/** The lines and bodies of all grounds across the window, of a shape that is moving where they are at its time. */
-void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
-/** Draws shapes, trails and marks of a view into a box: that of all its window, margins included. */
-strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view);
+void strut_draw_shapes(strut_canvas *canvas, const strut_axes *axes, const strut_panel *view);
+/** Names of nodes and, where the style says so, of members, where they cover little. */
+void strut_draw_names(strut_canvas *canvas, const strut_axes *axes, const strut_panel *view);
 /** More than its margin takes below a view, for the forces of the ground [pt]. */
 double strut_view_arrows(const strut_panel *view);
-#define STRUT_ARROW 20.0 /* the largest of them [pt] */
-/** A scale bar with its length, such as "20 mm", at the lower left corner of a view so wide [pt], at its scale [pt/m]. */
-void strut_draw_yardstick(strut_canvas *canvas, double left, double bottom, double width,
-                          double scale);

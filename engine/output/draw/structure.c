@@ -19,36 +19,17 @@ static const double SMALLEST = 0.3;                     /* more that is thinner 
 /* A structure being drawn. */
 typedef struct drawing {
   strut_canvas *canvas;
-  const strut_window *window;
+  const strut_axes *axes;
   const strut_model *model;
   const double *q;
   const strut_structure_style *style;
   double thin; /* factor of widths, from the mean length of the members on the page */
 } drawing;
 
-strut_window strut_window_fit(strut_box box, strut_bounds b, double margin) {
-  assert(box.width > 0 && box.height > 0);
-  double width = b.high[0] - b.low[0], height = b.high[1] - b.low[1];
-  bool empty = !(width >= 0 && height >= 0);
-  double middle[2] = {empty ? 0 : b.low[0] + 0.5 * width, empty ? 0 : b.low[1] + 0.5 * height};
-  double room[2] = {fmax(box.width - 2 * margin, 1), fmax(box.height - 2 * margin, 1)};
-  double scale = fmin(room[0] / width, room[1] / height);
-  if (empty || !(scale < HUGE_VAL)) scale = fmin(room[0], room[1]); /* a single point: 1 m wide */
-  return (strut_window){.box = box,
-                        .scale = scale,
-                        .left = middle[0] - 0.5 * box.width / scale,
-                        .top = middle[1] + 0.5 * box.height / scale};
-}
-
-void strut_window_point(const strut_window *window, const double position[2], double point[2]) {
-  point[0] = window->box.x + (position[0] - window->left) * window->scale;
-  point[1] = window->box.y + (window->top - position[1]) * window->scale;
-}
-
 /* ---- in places of the plane ---- */
 
 static void draw_places(const drawing *d, double (*places)[2], size_t count, strut_pen pen) {
-  for (size_t k = 0; k < count; k++) strut_window_point(d->window, places[k], places[k]);
+  for (size_t k = 0; k < count; k++) strut_axes_point(d->axes, places[k], places[k]);
   strut_draw_line(d->canvas, (const double(*)[2])places, count, pen);
 }
 
@@ -56,7 +37,7 @@ static void draw_places(const drawing *d, double (*places)[2], size_t count, str
 static void draw_circle(const drawing *d, const double place[2], double radius, strut_colour fill,
                         const strut_pen *pen) {
   double at[2];
-  strut_window_point(d->window, place, at);
+  strut_axes_point(d->axes, place, at);
   strut_draw_circle(d->canvas, at[0], at[1], radius, &(strut_fill){.colour = fill}, pen);
 }
 
@@ -105,7 +86,7 @@ static void find_part(const drawing *d, const route *r, size_t k, double ends[2]
     place[0][0] += off * uy, place[0][1] -= off * ux;
     place[1][0] = place[0][0] + free * ux, place[1][1] = place[0][1] + free * uy;
   }
-  for (int end = 0; end < 2; end++) strut_window_point(d->window, place[end], ends[end]);
+  for (int end = 0; end < 2; end++) strut_axes_point(d->axes, place[end], ends[end]);
 }
 
 /* The longest part of a member, where its name and its stop stand. */
@@ -121,18 +102,20 @@ static void find_longest(const drawing *d, size_t member, double longest[2][2]) 
   }
 }
 
-static double find_thinning(const drawing *d) {
+static drawing begin(strut_canvas *canvas, const strut_axes *axes, const strut_shape *shape) {
+  drawing d = {canvas, axes, shape->model, shape->q, &shape->style, 1.0};
   double sum = 0, ends[2][2];
   size_t finite = 0;
-  for (size_t j = 0; j < d->model->scene->member_count; j++) {
-    const route r = find_route(d, j);
+  for (size_t j = 0; j < d.model->scene->member_count; j++) {
+    const route r = find_route(&d, j);
     for (size_t k = 0; k < r.count; k++) {
-      find_part(d, &r, k, ends);
+      find_part(&d, &r, k, ends);
       double length = strut_distance(ends[0], ends[1]);
       if (isfinite(length)) sum += length, finite++;
     }
   }
-  return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
+  if (finite) d.thin = fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH));
+  return d;
 }
 
 static bool is_slack(const drawing *d, size_t j) {
@@ -240,7 +223,7 @@ static void find_middle(const drawing *d, double middle[2]) {
   int32_t count = d->model->node_count;
   double centre[2] = {0.0, 0.0};
   for (int32_t i = 0; i < 2 * count; i++) centre[i % 2] += d->q[i] / count;
-  strut_window_point(d->window, centre, middle);
+  strut_axes_point(d->axes, centre, middle);
 }
 
 /* Triangles below pinned nodes, on wheels where one direction is free. */
@@ -250,7 +233,7 @@ static void draw_supports(const drawing *d) {
   for (int32_t i = 0; i < d->model->node_count; i++) {
     const bool *fixed = d->model->scene->nodes[i].fixed;
     if (!fixed[0] && !fixed[1]) continue;
-    strut_window_point(d->window, d->q + 2 * i, tip);
+    strut_axes_point(d->axes, d->q + 2 * i, tip);
     /* Fixed in x only: drawn from the side away from the structure. */
     bool left = strut_settle_coordinate(tip[0]) <= strut_settle_coordinate(middle[0]);
     const double below[2] = {0, 1}, side[2] = {left ? -1 : 1, 0};
@@ -279,7 +262,7 @@ static void draw_arc(const drawing *d, const double centre[2], double radius, do
 static void draw_hinge(const drawing *d, const strut_hinge *hinge, double angle, strut_pen pen) {
   const double *at = d->q + 2 * hinge->node[1], *from = d->q + 2 * hinge->node[0];
   double arm = fmin(strut_distance(from, at), strut_distance(at, d->q + 2 * hinge->node[2]));
-  draw_arc(d, at, fmin(HINGE * d->thin / d->window->scale, 0.4 * arm),
+  draw_arc(d, at, fmin(HINGE * d->thin / d->axes->scale, 0.4 * arm),
            atan2(from[1] - at[1], from[0] - at[0]), fmax(-STRUT_TAU, fmin(STRUT_TAU, angle)), pen);
 }
 
@@ -301,7 +284,7 @@ static void draw_cells(const drawing *d) {
   for (size_t i = 0; i < d->model->scene->cell_count; i++) {
     const strut_cell *cell = &d->model->scene->cells[i];
     for (size_t k = 0; k < cell->node_count; k++)
-      strut_window_point(d->window, d->q + 2 * cell->node[k], corner[k]);
+      strut_axes_point(d->axes, d->q + 2 * cell->node[k], corner[k]);
     strut_draw_polygon(d->canvas, (const double(*)[2])corner, cell->node_count, &fill, &pen);
   }
 }
@@ -313,7 +296,7 @@ static void draw_collisions(const drawing *d) {
   for (size_t i = 0; i < 2 * d->model->scene->collision_count; i++) {
     const strut_collision *collision = &d->model->scene->collisions[i / 2];
     int32_t node = collision->node[i % 2], member = collision->member[i % 2];
-    double width = collision->thickness * d->window->scale;
+    double width = collision->thickness * d->axes->scale;
     if (node >= 0) draw_circle(d, d->q + 2 * node, 0.5 * width, colour, NULL);
     if (member < 0) continue;
     const route r = find_route(d, (size_t)member);
@@ -356,7 +339,7 @@ static void draw_elements(const drawing *d) {
     const uint32_t *at = elements->at + e->first;
     if (e->strain == STRUT_STRAIN_WRAP && e->role == STRUT_ELEMENT_MEMBER)
       for (int32_t k = 1; k + 1 < e->nodes; k++)
-        draw_circle(d, d->q + at[k], e->radius * d->window->scale, strut_grey(0.93), &rim);
+        draw_circle(d, d->q + at[k], e->radius * d->axes->scale, strut_grey(0.93), &rim);
     if (e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_CELL ||
         e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_CONTACT ||
         e->role == STRUT_ELEMENT_LOAD)
@@ -407,7 +390,7 @@ static void draw_name(const drawing *d, const double at[2], double angle, double
                                              .gap = gap,
                                              .angle = angle,
                                              .steady = 0.2,
-                                             .inside = d->window->box});
+                                             .inside = d->axes->frame});
 }
 
 /* Names stand outside of a structure rather than inside: away from its middle, else at the upper right. */
@@ -417,57 +400,84 @@ static double find_outwards(const double at[2], const double middle[2]) {
   return hypot(x, y) > NEAR_MIDDLE ? atan2(y, x) : 0.25 * STRUT_PI;
 }
 
-void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
-  enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
-  const drawing d = {canvas, window, shape->model, shape->q, &shape->style, 1.0};
-  const strut_scene *scene = shape->model->scene;
-  double middle[2], at[2], ends[2][2];
-  if (scene->node_count > MOST_NAMED) return;
-  find_middle(&d, middle);
-  for (size_t i = 0; i < scene->node_count; i++) {
-    strut_window_point(window, shape->q + 2 * i, at);
-    draw_name(&d, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
+/* True if names cover little of what is seen. */
+static bool names_fit(const drawing *d, const strut_panel *view) {
+  static const double COVERED = 0.22; /* of a view, by names */
+  double covered = 0.0, seen = COVERED;
+  for (int c = 0; c < 2; c++)
+    seen *= (view->bounds.high[c] - view->bounds.low[c]) * d->axes->scale + 2 * view->margin;
+  for (size_t i = 0; i < d->model->scene->node_count; i++) {
+    const strut_box name =
+        strut_text_box(d->canvas, d->model->scene->nodes[i].name, (strut_font){.size = NAME_SIZE});
+    covered += name.width * name.height;
   }
-  for (size_t j = 0; j < scene->member_count && shape->style.member_names; j++) {
-    find_longest(&d, j, ends); /* the name is drawn at its middle */
+  return covered <= seen;
+}
+
+static void draw_names(const drawing *d) {
+  const strut_scene *scene = d->model->scene;
+  double middle[2], at[2], ends[2][2];
+  find_middle(d, middle);
+  for (size_t i = 0; i < scene->node_count; i++) {
+    strut_axes_point(d->axes, d->q + 2 * i, at);
+    draw_name(d, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
+  }
+  for (size_t j = 0; j < scene->member_count && d->style->member_names; j++) {
+    find_longest(d, j, ends); /* the name is drawn at its middle */
     for (int c = 0; c < 2; c++) at[c] = 0.5 * (ends[0][c] + ends[1][c]);
-    draw_name(&d, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
+    draw_name(d, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
   }
 }
 
-/* Forces of the ground on its contacts: normal and friction. */
-static void draw_forces(strut_canvas *canvas, const strut_window *window,
-                        const strut_shape *shape) {
-  const strut_contact_table *contacts = &shape->model->contacts;
+void strut_draw_names(strut_canvas *canvas, const strut_axes *axes, const strut_panel *view) {
+  enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
+  for (const strut_shape *shape = view->shapes; shape < view->shapes + view->shape_count; shape++) {
+    const drawing d = begin(canvas, axes, shape);
+    if (shape->names && d.model->node_count <= MOST_NAMED && names_fit(&d, view)) draw_names(&d);
+  }
+}
+
+/* ---- forces of the ground on its contacts: normal and friction ---- */
+
+static const double ARROW = 20.0; /* the largest of them [pt] */
+
+static void draw_forces(const drawing *d, const strut_shape *shape) {
+  const strut_contact_table *contacts = &d->model->contacts;
   const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
   for (int32_t i = 0; shape->forces && i < contacts->count && shape->force_limit > 0; i++) {
-    double at[2], normal = shape->forces[i][0] / shape->force_limit * STRUT_ARROW;
-    double along = shape->forces[i][1] / shape->force_limit * STRUT_ARROW;
-    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, shape->q, NULL, -1);
+    double at[2], normal = shape->forces[i][0] / shape->force_limit * ARROW;
+    double along = shape->forces[i][1] / shape->force_limit * ARROW;
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, d->q, NULL, -1);
     const double *n = pose.axes.normal, *t = pose.axes.tangent;
-    strut_window_point(window, shape->q + contacts->at[i], at);
+    strut_axes_point(d->axes, d->q + contacts->at[i], at);
     if (fabs(normal) > 0.3) /* the arrow's tip is at the node */
-      strut_draw_arrow(canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5, pen);
+      strut_draw_arrow(d->canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5,
+                       pen);
     if (fabs(along) > 0.3)
-      strut_draw_arrow(canvas, at[0], at[1], at[0] + along * t[0], at[1] - along * t[1], 5, pen);
+      strut_draw_arrow(d->canvas, at[0], at[1], at[0] + along * t[0], at[1] - along * t[1], 5, pen);
   }
 }
 
-void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
-  drawing d = {canvas, window, shape->model, shape->q, &shape->style, 1.0};
-  d.thin = find_thinning(&d);
-  if (!shape->style.no_supports) draw_supports(&d);
-  draw_cells(&d);
-  draw_collisions(&d);
-  draw_kind(&d, STRUT_BAR, false); /* thin ones above thick ones, to be seen along a bar */
-  draw_kind(&d, STRUT_SPRING, false);
-  draw_kind(&d, STRUT_CABLE, true);
-  draw_kind(&d, STRUT_CABLE, false);
-  if (d.thin >= SMALLEST) {
-    draw_elements(&d);
-    draw_masses(&d);
+double strut_view_arrows(const strut_panel *view) {
+  double room = 0.0;
+  for (size_t i = 0; i < view->shape_count; i++)
+    if (view->shapes[i].forces) room = fmax(room, ARROW - view->margin);
+  return room;
+}
+
+static void draw_shape(const drawing *d, const strut_shape *shape) {
+  if (!d->style->no_supports) draw_supports(d);
+  draw_cells(d);
+  draw_collisions(d);
+  draw_kind(d, STRUT_BAR, false); /* thin ones above thick ones, to be seen along a bar */
+  draw_kind(d, STRUT_SPRING, false);
+  draw_kind(d, STRUT_CABLE, true);
+  draw_kind(d, STRUT_CABLE, false);
+  if (d->thin >= SMALLEST) {
+    draw_elements(d);
+    draw_masses(d);
   }
-  draw_forces(canvas, window, shape);
+  draw_forces(d, shape);
 }
 
 /* ---- grounds ---- */
@@ -479,9 +489,8 @@ static void hatch_below(strut_canvas *canvas, const double (*points)[2], size_t 
   const strut_fill fill = {.colour = strut_grey(0.95), .hatch = strut_grey(0.72)};
   for (size_t k = 0; k + 1 < count; k++) {
     const double *a = points[k], *b = points[k + 1];
-    double x = b[0] - a[0], y = b[1] - a[1], length = sqrt(x * x + y * y);
-    if (!(length > 0.0)) continue;
-    double across[2] = {-y / length * DEPTH, x / length * DEPTH}; /* the page's y points down */
+    double part = DEPTH / strut_distance(a, b);
+    double across[2] = {part * (a[1] - b[1]), part * (b[0] - a[0])}; /* the page's y points down */
     const double strip[4][2] = {{a[0], a[1]},
                                 {b[0], b[1]},
                                 {b[0] + across[0], b[1] + across[1]},
@@ -491,44 +500,52 @@ static void hatch_below(strut_canvas *canvas, const double (*points)[2], size_t 
 }
 
 /* The belt's direction, within the solid below the middle of a line. */
-static void draw_belt(strut_canvas *canvas, const double (*points)[2], double speed) {
-  const double *a = points[0], *b = points[1];
-  double x = b[0] - a[0], y = b[1] - a[1], length = sqrt(x * x + y * y);
-  if (!(length > 0.0) || speed == 0.0) return;
-  double along[2] = {x / length, y / length}, sign = speed > 0.0 ? 12.0 : -12.0;
-  double at[2] = {0.5 * (a[0] + b[0]) - 1.9 * DEPTH * along[1],
-                  0.5 * (a[1] + b[1]) + 1.9 * DEPTH * along[0]};
-  strut_draw_arrow(canvas, at[0] - sign * along[0], at[1] - sign * along[1],
-                   at[0] + sign * along[0], at[1] + sign * along[1], 5,
-                   (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
+static void draw_belt(strut_canvas *canvas, const double *a, const double *b, double speed) {
+  double length = strut_distance(a, b), way = speed > 0.0 ? 12.0 : -12.0;
+  double along[2] = {(b[0] - a[0]) / length, (b[1] - a[1]) / length};
+  double x = 0.5 * (a[0] + b[0]) - 1.9 * DEPTH * along[1];
+  double y = 0.5 * (a[1] + b[1]) + 1.9 * DEPTH * along[0];
+  if (length > 0.0 && speed != 0.0)
+    strut_draw_arrow(canvas, x - way * along[0], y - way * along[1], x + way * along[0],
+                     y + way * along[1], 5, (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
 }
 
-static void draw_one(strut_canvas *canvas, const strut_window *window, const strut_ground *ground,
-                     const double *place) {
-  double width = window->box.width / window->scale, height = window->box.height / window->scale;
-  const double middle[2] = {window->left + 0.5 * width, window->top - 0.5 * height};
+/* A ground's line or body across the frame, moved to `place` unless that is NULL. */
+static void draw_ground(const drawing *d, const strut_ground *ground, const double *place) {
+  const strut_axis *x = &d->axes->x, *y = &d->axes->y;
+  const double middle[2] = {0.5 * (x->low + x->high), 0.5 * (y->low + y->high)};
+  double reach = 0.7 * (x->high - x->low + y->high - y->low);
   strut_arena arena = {0};
   double(*points)[2] = strut_arena_allocate(&arena, strut_outline_most(ground), sizeof *points);
   if (points) {
-    size_t count = strut_outline_of(ground, place, middle, 0.7 * (width + height), points);
-    for (size_t k = 0; k < count; k++) strut_window_point(window, points[k], points[k]);
-    hatch_below(canvas, (const double(*)[2])points, count);
-    strut_draw_line(canvas, (const double(*)[2])points, count,
+    size_t count = strut_outline_of(ground, place, middle, reach, points);
+    for (size_t k = 0; k < count; k++) strut_axes_point(d->axes, points[k], points[k]);
+    hatch_below(d->canvas, (const double(*)[2])points, count);
+    strut_draw_line(d->canvas, (const double(*)[2])points, count,
                     (strut_pen){.colour = strut_grey(0.3), .width = 0.8});
     if (ground->shape == STRUT_GROUND_LINE)
-      draw_belt(canvas, (const double(*)[2])points, ground->belt_speed);
+      draw_belt(d->canvas, points[0], points[1], ground->belt_speed);
   }
   strut_arena_free(&arena);
 }
 
-void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
-  const strut_scene *scene = shape->model->scene;
+/* The lines and bodies of all grounds, of a shape that is moving where they are at its time. */
+static void draw_grounds(const drawing *d, const strut_shape *shape) {
+  const strut_scene *scene = d->model->scene;
   double place[2];
-  strut_canvas_clip(canvas, window->box);
-  if (scene->ground.present) draw_one(canvas, window, &scene->ground, NULL);
+  if (scene->ground.present) draw_ground(d, &scene->ground, NULL);
   for (size_t g = 0; g < scene->ground_count; g++) {
     if (shape->moving) strut_ground_place(scene, g, shape->style.time, place);
-    draw_one(canvas, window, &scene->grounds[g], shape->moving ? place : NULL);
+    draw_ground(d, &scene->grounds[g], shape->moving ? place : NULL);
   }
-  strut_canvas_unclip(canvas);
+}
+
+void strut_draw_shapes(strut_canvas *canvas, const strut_axes *axes, const strut_panel *view) {
+  for (int pass = 0; pass < 2; pass++) /* grounds first */
+    for (size_t i = 0; i < view->shape_count; i++) {
+      const strut_shape *shape = &view->shapes[i];
+      const drawing d = begin(canvas, axes, shape);
+      if (pass) draw_shape(&d, shape);
+      if (!pass && shape->ground) draw_grounds(&d, shape);
+    }
 }

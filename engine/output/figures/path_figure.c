@@ -115,12 +115,13 @@ static const double *way_at(const path_picture *picture, const strut_path_state 
 }
 
 /* Sets the next point of a curve, whose edge to the one after it is unstable or not, and of the path's way. */
-static void add_point(path_picture *picture, strut_series *curve, strut_trail *way,
+static void add_point(path_picture *picture, strut_series *curve, strut_series *way,
                       const strut_path_state *at, bool unstable) {
   double place[2];
   find_place(picture, at, place);
   strut_add_point(&picture->figure, curve, place[0], place[1])->unstable = unstable;
-  if (way) strut_add_place(&picture->figure, way, way_at(picture, at, place));
+  if (way) way_at(picture, at, place);
+  if (way) strut_add_point(&picture->figure, way, place[0], place[1]);
 }
 
 static path_stop *add_stop(path_picture *picture, const strut_path_state *at, const char *text) {
@@ -159,7 +160,7 @@ static void add_path(path_picture *picture, strut_series *curve, strut_panel *vi
   const strut_path *path = picture->path;
   double whole = fmax(path->points[path->point_count - 1].at.arc, 1e-300);
   size_t next = 0;
-  strut_trail *way = strut_add_trail(&picture->figure, view, STRUT_TRAIL_LINE,
+  strut_series *way = strut_add_line(&picture->figure, view, STRUT_SERIES_LINE,
                                      (strut_pen){.colour = strut_grey(0.45), .width = 0.7});
   for (size_t k = 0; k < path->point_count; k++) {
     const strut_path_point *point = &path->points[k];
@@ -271,7 +272,7 @@ static void add_loads(path_picture *picture, strut_panel *panel) {
     double ends[2][2];
     if (!load_grows(picture->path, &scene->loads[l]) || !(hypot(force[0], force[1]) > 0)) continue;
     load_arrow(picture, &scene->loads[l], largest, ends);
-    strut_add_segment(&picture->figure, panel, STRUT_TRAIL_ARROW, pen, ends[0], ends[1]);
+    strut_add_segment(&picture->figure, panel, STRUT_SERIES_ARROW, pen, ends[0], ends[1]);
   }
 }
 

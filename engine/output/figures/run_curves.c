@@ -202,7 +202,7 @@ static void add_dots(const block *self, strut_panel *panel, size_t item, size_t 
   if (!count) return;
   strut_series *series =
       strut_add_series(page, panel, strut_figure_text(page, "%s measured", label_of(self, item)));
-  series->cloud = true;
+  series->kind = STRUT_SERIES_DOTS;
   series->pen = (strut_pen){.colour = strut_faded(strut_series_pen(look).colour, 0.4), .width = 1};
   for (size_t k = 0; k < count; k++) strut_add_point(page, series, dots[k][0], dots[k][1]);
 }
@@ -281,10 +281,11 @@ static bool add_paths(const strut_run_scene *run, size_t first, strut_panel *pan
       seen = seen || fabs(strut_run_positions(run, f)[i] - end[i]) > least;
   if (!seen || nodes > MOST_PATHS) return false;
   for (size_t i = 0; i < nodes; i++) {
-    strut_trail *trail =
-        strut_add_trail(run->page, panel, STRUT_TRAIL_SEQUENCE, (strut_pen){.width = 0.9});
+    strut_series *way =
+        strut_add_line(run->page, panel, STRUT_SERIES_SEQUENCE, (strut_pen){.width = 0.9});
     for (size_t f = first; f < run->frames; f++)
-      strut_add_place(run->page, trail, strut_run_positions(run, f) + 2 * i);
+      strut_add_point(run->page, way, strut_run_positions(run, f)[2 * i],
+                      strut_run_positions(run, f)[2 * i + 1]);
   }
   return true;
 }

@@ -125,7 +125,7 @@ static void add_marks(const making *self, strut_figure *page, strut_panel *panel
   if (!ground->present || ground->belt_speed != 0) return;
   for (int i = 0; x < middle + half && i < MARKS; i++, x += step) {
     double y = strut_run_ground_at(&self->run, x);
-    strut_add_segment(page, panel, STRUT_TRAIL_LINE, pen, (const double[2]){x, y},
+    strut_add_segment(page, panel, STRUT_SERIES_LINE, pen, (const double[2]){x, y},
                       (const double[2]){x, y - 9 / scale});
   }
 }

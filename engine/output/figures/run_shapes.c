@@ -81,15 +81,15 @@ static void add_paths(const strut_run_scene *run, const double *own, const doubl
   const strut_pen dashed = {strut_grey(0.25), TRAIL + FRINGE, {2.2, 2.2}, true};
   const strut_pen pen = other ? dashed : (strut_pen){.width = TRAIL};
   for (size_t i = 0; own && centres && i < run->motion->node_count; i++) {
-    strut_trail *trail =
-        strut_add_trail(run->page, panel, other ? STRUT_TRAIL_LINE : STRUT_TRAIL_SEQUENCE, pen);
+    strut_series *way =
+        strut_add_line(run->page, panel, other ? STRUT_SERIES_LINE : STRUT_SERIES_SEQUENCE, pen);
     for (size_t f = strut_run_first(run, 1, 1); f < run->frames; f++) {
       double at[2];
       for (int d = 0; d < 2; d++) {
         size_t k = 2 * i + (size_t)d;
         at[d] = centres[k] + enlargement(run, d) * (strut_run_positions(run, f)[k] - own[k]);
       }
-      strut_add_place(run->page, trail, at);
+      strut_add_point(run->page, way, at[0], at[1]);
       if (!other) strut_bounds_widen(&panel->bounds, at, at);
     }
   }
@@ -255,7 +255,7 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
   if (!self->common[0] || !self->moves) return;
   /* Where the measured point began. */
   strut_add_segment(
-      run->page, panel, STRUT_TRAIL_LINE, (strut_pen){strut_grey(0.6), 0.6, {2, 2}, false},
+      run->page, panel, STRUT_SERIES_LINE, (strut_pen){strut_grey(0.6), 0.6, {2, 2}, false},
       (const double[2]){start, self->all.low[1]}, (const double[2]){start, self->all.high[1]});
 }
 

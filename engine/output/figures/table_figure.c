@@ -247,7 +247,7 @@ static void add_keys(maker *self) {
 static void add_points(maker *self, size_t number, strut_panel *panel) {
   for (int marked = 0; marked < 2; marked++) {
     strut_series *cloud = strut_add_series(&self->page, panel, NULL);
-    cloud->cloud = true;
+    cloud->kind = STRUT_SERIES_DOTS;
     cloud->look = 0;
     for (size_t i = 0; i < self->table.row_count; i++) {
       if (!is_in_panel(self, number, i) || (*column_of(self, self->mark)->text[i] != 0) != marked)

@@ -26,7 +26,7 @@ static strut_series *add_dots(strut_figure *figure, strut_panel *panel, const ch
                               const strut_fit_match *match, size_t s, const double *numbers,
                               double unit) {
   strut_series *dots = strut_add_series(figure, panel, label);
-  dots->cloud = true;
+  dots->kind = STRUT_SERIES_DOTS;
   for (size_t i = 0; i < match->count; i++)
     if (!isnan(match->series[s].measured[i]))
       strut_add_point(figure, dots, place_of(match, i), numbers[i] * unit);
