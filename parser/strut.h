@@ -34,7 +34,7 @@ extern "C" {
 #include "engine/model/state.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
-#include "engine/output/draw/structure.h"
+#include "engine/output/draw/figure.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/figures/table_figure.h"

@@ -279,7 +279,12 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
   draw_ticks(canvas, axes, 1, &y);
   label_x(canvas, box, box->y + box->height + TICK + 1 + axes->ticks, x.label);
   strut_draw_text(canvas, box->x - TICK - 2 * GAP - left, box->y + 0.5 * box->height, y.label,
-                  (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
+                  (strut_font){.size = LABEL_SIZE,
+                               .across = 0.5,
+                               .down = 1,
+                               .upwards = true,
+                               .width = box->height + 2 * LABEL_SIZE,
+                               .lines = 1});
   strut_draw_box(canvas, *box, NULL, &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
 }
 
@@ -309,31 +314,26 @@ static void include_panel(const strut_panel *panel, strut_axis *x, strut_axis *y
   }
 }
 
-/* Numbers of the panels, of the y axis or of the scale; only counts them where `values` is NULL. */
-static size_t gather(const strut_panel *panels, size_t count, bool scale, double *values) {
-  size_t known = 0;
-  for (const strut_panel *panel = panels; panel < panels + count; panel++) {
-    const strut_map *map = panel->map;
-    for (size_t s = 0; s < panel->series_count; s++)
-      for (size_t k = 0; k < panel->series[s].count; k++, known++)
-        if (values)
-          values[known] = scale ? panel->series[s].points[k].value : panel->series[s].points[k].y;
-    for (size_t k = 0; scale && map && k < map->columns * map->rows; k++, known++)
-      if (values) values[known] = map->value[k];
-  }
-  return known;
-}
-
-/* The range of what is seen of those numbers. False: out of memory. */
+/* The range of what is seen of the panels' numbers, of the y axis or of the scale. False: out of memory. */
 static bool find_range(const strut_panel *panels, size_t count, bool scale, double range[2],
                        strut_beyond *beyond, strut_arena *arena) {
-  size_t known = gather(panels, count, scale, NULL);
-  double *values = strut_arena_allocate(arena, known + 1, sizeof *values);
+  size_t known = 0, room = 1;
+  const strut_panel *end = panels + count;
+  for (const strut_panel *panel = panels; panel < end; panel++) {
+    for (size_t s = 0; s < panel->series_count; s++) room += panel->series[s].count;
+    if (panel->map) room += panel->map->columns * panel->map->rows;
+  }
+  double *values = strut_arena_allocate(arena, room, sizeof *values);
   range[0] = range[1] = (double)NAN;
-  if (!values) return false;
-  gather(panels, count, scale, values);
-  *beyond = strut_leave_out(values, known, FEW, range);
-  return true;
+  for (const strut_panel *panel = panels; panel < end && values; panel++) {
+    for (size_t s = 0; s < panel->series_count; s++)
+      for (size_t k = 0; k < panel->series[s].count; k++)
+        values[known++] = scale ? panel->series[s].points[k].value : panel->series[s].points[k].y;
+    for (size_t k = 0; scale && panel->map && k < panel->map->columns * panel->map->rows; k++)
+      values[known++] = panel->map->value[k];
+  }
+  if (values) *beyond = strut_leave_out(values, known, FEW, range);
+  return values != NULL;
 }
 
 /* The range of the colours; of a signed quantity with zero in the middle. */
@@ -354,11 +354,6 @@ static bool settle_scale(const strut_panel *panels, size_t count, strut_colour_s
   return true;
 }
 
-static void include_point(strut_bounds *bounds, const strut_point *point) {
-  const double place[2] = {point->x, point->y};
-  if (isfinite(point->x + point->y)) strut_bounds_widen(bounds, place, place);
-}
-
 /* All views show what any of them has to. */
 static void settle_views(strut_panel *panels, size_t count) {
   strut_bounds all = strut_bounds_none();
@@ -371,10 +366,31 @@ static void settle_views(strut_panel *panels, size_t count) {
     for (size_t i = 0; i < panel->shape_count; i++)
       strut_bounds_add(&all, panel->shapes[i].model, panel->shapes[i].q);
     for (size_t i = 0; i < panel->series_count; i++)
-      for (size_t k = 0; k < panel->series[i].count; k++)
-        include_point(&all, &panel->series[i].points[k]);
+      for (size_t k = 0; k < panel->series[i].count; k++) {
+        const double place[] = {panel->series[i].points[k].x, panel->series[i].points[k].y};
+        strut_bounds_widen(&all, place, place);
+      }
   }
   for (size_t i = 0; i < count; i++) panels[i].bounds = all;
+}
+
+/* Says in a panel's note how many points lie beyond its y axis. False: out of memory. */
+static bool count_beyond(strut_panel *panel, strut_arena *arena) {
+  strut_beyond beyond = {0};
+  const strut_axis *axis = &panel->y;
+  char text[STRUT_BEYOND_TEXT];
+  for (size_t i = 0; i < panel->series_count; i++)
+    for (size_t k = 0; k < panel->series[i].count; k++) {
+      double y = panel->series[i].points[k].y;
+      bool out = y > axis->high || y < axis->low;
+      beyond.above += out;
+      if (out && fabs(y) > fabs(beyond.farthest)) beyond.farthest = y;
+    }
+  if (!beyond.above) return true;
+  panel->note =
+      strut_arena_format(arena, "%s%s%s", panel->note ? panel->note : "", panel->note ? "; " : "",
+                         strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text));
+  return panel->note != NULL;
 }
 
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena) {
@@ -403,6 +419,7 @@ bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena) 
     panels[i].y.low = y.low, panels[i].y.high = y.high;
     panels[i].outliers = trim;
     if (scale.name) panels[i].scale = scale;
+    if (trim && !count_beyond(&panels[i], arena)) return false;
   }
   return true;
 }

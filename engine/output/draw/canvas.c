@@ -279,12 +279,6 @@ static cairo_surface_t *create_surface(strut_canvas *canvas, double scale, const
   return surface;
 }
 
-static cairo_t *create_context(cairo_surface_t *surface) {
-  cairo_t *cairo = cairo_create(surface);
-  cairo_surface_destroy(surface); /* the context keeps it */
-  return cairo;
-}
-
 /* With `path`, a canvas that becomes that file. */
 static strut_status open_canvas(strut_canvas *wanted, const char *path, double scale,
                                 const char *title, strut_canvas **canvas, strut_error *error) {
@@ -294,10 +288,13 @@ static strut_status open_canvas(strut_canvas *wanted, const char *path, double s
   *c = *wanted;
   strut_status status = path ? strut_file_open_path(&c->file, path, error) : STRUT_OK;
   if (status == STRUT_OK) {
-    c->cairo = create_context(create_surface(c, scale, title));
-    c->ink = create_context(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
-                                                       (int)ceil(fmin(c->box.width, LARGEST)),
-                                                       (int)ceil(fmin(c->box.height, LARGEST))));
+    cairo_surface_t *page = create_surface(c, scale, title);
+    cairo_surface_t *ink =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(fmin(c->box.width, LARGEST)),
+                                   (int)ceil(fmin(c->box.height, LARGEST)));
+    c->cairo = cairo_create(page), c->ink = cairo_create(ink);
+    cairo_surface_destroy(page); /* the contexts keep them */
+    cairo_surface_destroy(ink);
     cairo_scale(c->cairo, scale, scale);
     cairo_set_line_join(c->cairo, CAIRO_LINE_JOIN_ROUND);
     c->layout = create_layout(c->cairo);
@@ -401,8 +398,6 @@ void strut_canvas_free(strut_canvas *canvas) {
 void strut_canvas_keep_texts(strut_canvas *canvas) {
   canvas->keep_texts = canvas->format == STRUT_PICTURE_SVG;
 }
-
-strut_file *strut_canvas_file(strut_canvas *canvas) { return &canvas->file; }
 
 strut_box strut_canvas_box(const strut_canvas *canvas) { return canvas->box; }
 

@@ -116,7 +116,6 @@ typedef struct strut_label {
   double steady;       /* how much that matters: 0 not at all, 1 usually */
   strut_box inside;    /* the text stays in here; zero: the page */
   int priority;        /* 0 to STRUT_HIGHEST_PRIORITY; higher ones are placed first */
-  bool loose;          /* names nothing at its place: no line leads there */
   bool dot, ring;      /* a filled circle there; an empty one around what is there */
   strut_colour colour; /* of the dot */
 } strut_label;
@@ -135,10 +134,6 @@ STRUT_API double strut_canvas_ink(strut_canvas *canvas, strut_box box);
  * What is symmetric lies on multiples of 1/2 pt; the rounding changes far from those.
  */
 static inline double strut_settle_coordinate(double x) { return floor(64.0 * x + 0.36) / 64.0; }
-
-struct strut_file;
-/** The file that a picture is written to, for tests that make writing fail. */
-STRUT_API struct strut_file *strut_canvas_file(strut_canvas *canvas);
 
 /* Colours that remain distinguishable in grey print and with colour blindness. */
 

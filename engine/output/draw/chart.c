@@ -10,7 +10,6 @@
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
 static const double PADDING = 3;                                                /* [pt] */
-static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 /* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
 static const double TURN = 1.25, VISIBLE = 8, COLUMN = 1;
 enum { FEW_POINTS = 30, MARKERS = 8 };
@@ -71,8 +70,6 @@ void strut_map_limits(const double *at, size_t count, double limits[2]) {
   limits[0] = edge(at, count, 0), limits[1] = edge(at, count, count);
 }
 
-static bool has_result(const strut_map *map, size_t k) { return isfinite(map->value[k]); }
-
 /* ---- the legend ---- */
 
 static void add_item(strut_figure *legend, strut_key_item item) {
@@ -91,7 +88,7 @@ static void name_cells(const strut_map *map, strut_figure *legend) {
   bool doubt = false, missing = false;
   for (size_t k = 0; k < map->columns * map->rows; k++) {
     doubt = doubt || (map->doubtful && map->doubtful[k]);
-    missing = missing || !has_result(map, k);
+    missing = missing || !isfinite(map->value[k]);
   }
   for (size_t i = 0; map->names && i < map->name_count; i++)
     add_area(legend, category_fill(i), map->names[i]);
@@ -230,22 +227,6 @@ static void draw_bands(const chart *self) {
   }
 }
 
-/* A note inside the frame, where it is emptiest, near its upper right corner. */
-static void draw_note(const chart *self, const char *text) {
-  const strut_box *box = &self->axes.frame;
-  const strut_label note = {.text = text,
-                            .font = {.size = 7,
-                                     .colour = strut_grey(0.3),
-                                     .halo = strut_grey(1),
-                                     .width = NOTE_WIDTH * box->width},
-                            .at = {box->x + box->width, box->y},
-                            .inside = {box->x + NOTE_INSET, box->y + NOTE_INSET,
-                                       box->width - 2 * NOTE_INSET, box->height - 2 * NOTE_INSET},
-                            .priority = 3,
-                            .loose = true};
-  strut_draw_label(self->canvas, &note);
-}
-
 static void stroke(const chart *self, const line *l, size_t from, size_t to) {
   strut_pen pen = l->pen;
   bool own = l->series->pen.width > 0;
@@ -338,15 +319,6 @@ static void draw_points(const chart *self, const line *l) {
   for (size_t k = first; k < series->count; k += every) draw_point(self, l, k);
 }
 
-static strut_fill cell_fill(const strut_panel *panel, size_t k) {
-  const strut_map *map = panel->map;
-  const strut_colour_scale *scale = &panel->scale;
-  if (!has_result(map, k)) return (strut_fill){.colour = strut_grey(1)};
-  if (map->names) return category_fill((size_t)map->value[k]);
-  return (strut_fill){.colour =
-                          strut_palette_at(scale->colours, map->value[k], scale->low, scale->high)};
-}
-
 /* The box of (count) cells of a row from cell k on. */
 static strut_box cell_box(const chart *self, size_t k, size_t count) {
   const strut_map *map = self->panel->map;
@@ -358,32 +330,38 @@ static strut_box cell_box(const chart *self, size_t k, size_t count) {
                         edge(map->ys, map->rows, row + 1)});
 }
 
-/* Hatching on a doubtful cell, a dot on one without a result. */
-static void mark_cell(const chart *self, size_t k) {
-  const strut_map *map = self->panel->map;
-  const strut_fill doubt = {.hatch = strut_grey(0.05)};
-  const strut_fill dot = {.colour = strut_grey(0.5)};
-  strut_box box = cell_box(self, k, 1);
-  if (map->doubtful && map->doubtful[k]) strut_draw_box(self->canvas, box, &doubt, NULL);
-  if (!has_result(map, k))
-    strut_draw_circle(self->canvas, box.x + 0.5 * box.width, box.y + 0.5 * box.height,
-                      fmin(1.0, 0.25 * fmin(box.width, box.height)), &dot, NULL);
-}
-
-/* Of a large map, equal neighbours in a row are drawn as one. */
-static void draw_map(const chart *self) {
+/* The colours of cells; of a large map, equal neighbours in a row are drawn as one. */
+static void draw_cells(const chart *self) {
   enum { MANY_CELLS = 10000 };
   const strut_map *map = self->panel->map;
+  const strut_colour_scale *scale = &self->panel->scale;
   size_t cells = map->columns * map->rows, joined;
   for (size_t k = 0; k < cells; k += joined) {
     for (joined = 1; cells >= MANY_CELLS && (k + joined) % map->columns; joined++)
       if (map->value[k + joined] != map->value[k]) break;
-    strut_fill fill = cell_fill(self->panel, k);
+    double value = map->value[k];
+    strut_fill fill = {.colour = strut_grey(1)};
+    if (isfinite(value) && map->names) fill = category_fill((size_t)value);
+    if (isfinite(value) && !map->names)
+      fill.colour = strut_palette_at(scale->colours, value, scale->low, scale->high);
     strut_box box = cell_box(self, k, joined);
     box.width += 0.4, box.y -= 0.4, box.height += 0.4;
     strut_draw_box(self->canvas, box, &fill, NULL);
   }
-  for (size_t k = 0; k < cells; k++) mark_cell(self, k);
+}
+
+/* Hatching on doubtful cells, a dot on those without a result. */
+static void mark_cells(const chart *self) {
+  const strut_map *map = self->panel->map;
+  const strut_fill doubt = {.hatch = strut_grey(0.05)}, dot = {.colour = strut_grey(0.5)};
+  for (size_t k = 0; k < map->columns * map->rows; k++) {
+    strut_box box = cell_box(self, k, 1);
+    double radius = fmin(1.0, 0.25 * fmin(box.width, box.height));
+    if (map->doubtful && map->doubtful[k]) strut_draw_box(self->canvas, box, &doubt, NULL);
+    if (!isfinite(map->value[k]))
+      strut_draw_circle(self->canvas, box.x + 0.5 * box.width, box.y + 0.5 * box.height, radius,
+                        &dot, NULL);
+  }
 }
 
 /* ---- marks ---- */
@@ -406,34 +384,24 @@ static void draw_mark(const chart *self, const strut_label *mark) {
   strut_draw_label(self->canvas, &label);
 }
 
-/* Marks where curves leave the frame above or below, and says how many points are there. */
+/* Marks where curves leave the frame above or below. */
 static void mark_beyond(const chart *self) {
-  strut_beyond beyond = {0};
   const strut_axis *axis = &self->axes.y;
-  char text[STRUT_BEYOND_TEXT];
   for (size_t i = 0; i < self->panel->series_count; i++) {
     const strut_series *series = &self->panel->series[i];
     bool before = false;
     for (const strut_point *p = series->points; p < series->points + series->count; p++) {
       bool out = p->y > axis->high || p->y < axis->low;
-      const strut_label mark = {.at = {p->x, p->y}};
-      beyond.above += out;
-      if (out && fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
-      if (out && !before) draw_mark(self, &mark);
+      if (out && !before) draw_mark(self, &(strut_label){.at = {p->x, p->y}});
       before = out;
     }
   }
-  draw_note(self, strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text));
 }
 
-/* Dark to bright; a path that is no longer than a dot is not drawn. */
 static void draw_sequence(const chart *self, const line *l) {
   enum { SHADES = 64 };
-  const double dot = 0.3; /* [pt] */
   size_t all = l->count > 2 ? l->count - 2 : 0;
-  double farthest = 0;
-  for (size_t k = 0; k <= all; k++) farthest = fmax(farthest, strut_distance(l->at[k], l->at[0]));
-  for (size_t shade = 0; shade < SHADES && farthest > dot; shade++) {
+  for (size_t shade = 0; shade < SHADES; shade++) {
     size_t first = shade * all / SHADES, last = (shade + 1) * all / SHADES;
     strut_pen pen = l->pen;
     pen.colour = strut_palette_at(STRUT_COLOURS_SEQUENTIAL, (double)shade, 0, SHADES - 1);
@@ -453,6 +421,15 @@ static void draw_arrow(const chart *self, const line *l) {
     strut_draw_arrow(self->canvas, from[0], from[1], to[0] - end * x, to[1] - end * y, 5, l->pen);
 }
 
+/* Is a line of its own pen longer than a dot? */
+static bool is_visible(const line *l) {
+  bool own = l->series->pen.width > 0 && !(l->series->bar > 0);
+  double farthest = own ? 0.0 : HUGE_VAL;
+  for (size_t k = 1; k + 1 < l->count; k++)
+    farthest = fmax(farthest, strut_distance(l->at[k], l->at[0]));
+  return farthest > 0.3;
+}
+
 /* All series but dots, within the frame. */
 static void draw_lines(const chart *self) {
   static void (*const draw[])(const chart *self, const line *l) = {
@@ -460,11 +437,11 @@ static void draw_lines(const chart *self) {
       [STRUT_SERIES_SEQUENCE] = draw_sequence,
       [STRUT_SERIES_ARROW] = draw_arrow};
   strut_canvas_clip(self->canvas, self->axes.frame);
-  for (const line *l = self->lines; l < self->lines + self->panel->series_count; l++)
-    if (l->series->kind != STRUT_SERIES_DOTS) {
-      (l->series->bar > 0 ? draw_bars : draw[l->series->kind])(self, l);
-      draw_whiskers(self, l);
-    }
+  for (const line *l = self->lines; l < self->lines + self->panel->series_count; l++) {
+    if (l->series->kind == STRUT_SERIES_DOTS || !is_visible(l)) continue;
+    (l->series->bar > 0 ? draw_bars : draw[l->series->kind])(self, l);
+    draw_whiskers(self, l);
+  }
   strut_canvas_unclip(self->canvas);
 }
 
@@ -475,15 +452,15 @@ static void draw_all_points(const chart *self, bool dots) {
 }
 
 static void draw_chart(const chart *self) {
+  bool areas = false;
   const strut_panel *panel = self->panel;
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
-  bool areas = false;
   strut_canvas_clip(self->canvas, self->axes.frame);
   draw_bands(self);
   strut_canvas_unclip(self->canvas);
   strut_draw_axes(self->canvas, &self->axes);
   strut_canvas_clip(self->canvas, self->axes.frame);
-  if (panel->map) draw_map(self);
+  if (panel->map) draw_cells(self), mark_cells(self);
   strut_canvas_unclip(self->canvas);
   draw_all_points(self, true);
   draw_lines(self);
@@ -491,9 +468,13 @@ static void draw_chart(const chart *self) {
   draw_all_points(self, false);
   if (panel->outliers) mark_beyond(self);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(self, &panel->marks[i]);
-  if (panel->remark) draw_note(self, panel->remark);
   for (size_t i = 0; i < panel->series_count; i++) areas = areas || self->lines[i].area;
-  if (areas) draw_note(self, "areas: ranges of oscillations");
+  const strut_box *box = &self->axes.frame;
+  if (areas)
+    strut_draw_label(self->canvas, &(strut_label){.text = "areas: ranges of oscillations",
+                                                  .font = {.size = 7, .halo = strut_grey(1)},
+                                                  .at = {box->x + box->width, box->y},
+                                                  .inside = *box});
 }
 
 /* Structures, lines and marks in their plane. */
@@ -523,7 +504,7 @@ bool strut_draw_panel(strut_canvas *canvas, strut_box box, const strut_panel *pa
   c.axes = strut_axes_place(canvas, box, panel->x, panel->y);
   const strut_box place = {c.axes.frame.x + PADDING, box.y + PADDING,
                            fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
-  double above = strut_draw_key(canvas, place, key.keys, key.key_count, true).height;
+  double above = strut_draw_key(canvas, place, key.keys, key.key_count).height;
   if (above > 0) above += 2 * PADDING;
   strut_arena_free(&key.arena);
   box.y += above, box.height -= above;

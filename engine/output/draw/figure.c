@@ -15,25 +15,26 @@ static const double LINE_GAP = 1.5, HEADING_GAP = 6; /* below texts of the headi
 static const double STICK = 17, BAR_WIDTH = 150;     /* of the foot [pt] */
 enum { COLUMNS = 3 };
 
-/* A page that is measured, then drawn. */
+/* A page that is measured on a small canvas, then drawn. */
 typedef struct page {
   strut_figure *figure; /* settled */
-  const char *title;    /* NULL: none */
-  strut_figure legend;  /* its keys are those of all panels */
-  double scale;         /* of the latest view [pt/m] */
+  strut_canvas *canvas;
+  const char *title;   /* NULL: none */
+  strut_figure legend; /* its keys are those of all panels */
+  double scale;        /* of the latest view [pt/m] */
+  bool measured;       /* panels are drawn, too */
 } page;
 
 /* Settles what the figure leaves open, panels together or each by itself. False: out of memory. */
 static bool begin_page(page *self, strut_figure *figure, const strut_plot *plot) {
   size_t together = figure->shared_axes ? figure->panel_count : 1;
-  bool fine = !figure->failed;
   *self = (page){.figure = figure, .title = plot->title ? plot->title : figure->title};
-  for (size_t i = 0; i < figure->panel_count && fine; i += together)
-    fine = strut_panels_settle(&figure->panels[i], together, &figure->arena);
+  for (size_t i = 0; i < figure->panel_count && !figure->failed; i += together)
+    figure->failed = !strut_panels_settle(&figure->panels[i], together, &figure->arena);
   if (figure->panel_count && figure->panels->scale.name) figure->scale = figure->panels->scale;
   for (size_t i = 0; figure->one_legend && i < figure->panel_count; i++)
     strut_panel_legend(&figure->panels[i], &self->legend);
-  return fine && !self->legend.failed;
+  return !figure->failed && !self->legend.failed;
 }
 
 /* ---- panels in rows ---- */
@@ -47,15 +48,14 @@ typedef struct group {
 } group;
 
 /* What is above a panel; draws it if `draw`. Returns its height. */
-static double put_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
-                          bool draw) {
+static double put_caption(const page *self, strut_box box, const strut_panel *panel, bool draw) {
   double indent = panel->shape_count ? 0 : INDENT, width = box.width - indent;
   const strut_font bold = {.size = 8.5, .bold = true, .width = width, .lines = 3};
   const strut_font grey = {.size = 7, .colour = strut_grey(0.3), .width = width - 4};
-  double title = strut_text_box(canvas, panel->title, bold).height + (panel->title ? 1 : 0);
-  double note = strut_text_box(canvas, panel->note, grey).height;
-  if (draw) strut_draw_text(canvas, box.x + indent, box.y, panel->title, bold);
-  if (draw) strut_draw_text(canvas, box.x + indent, box.y + title, panel->note, grey);
+  double title = strut_text_box(self->canvas, panel->title, bold).height + (panel->title ? 1 : 0);
+  double note = strut_text_box(self->canvas, panel->note, grey).height;
+  if (draw) strut_draw_text(self->canvas, box.x + indent, box.y, panel->title, bold);
+  if (draw) strut_draw_text(self->canvas, box.x + indent, box.y + title, panel->note, grey);
   return title + (note > 0 ? note + 1 : 0);
 }
 
@@ -119,27 +119,26 @@ static double chart_height(const strut_figure *figure, strut_canvas *canvas,
   return panel->height > 0 ? panel->height : height + (axes.upwards ? axes.ticks : 0);
 }
 
-/* The row of (count) panels; draws it if `fine`, which becomes false where memory is out. Returns its height. */
-static double put_row(page *self, strut_canvas *canvas, strut_box box, const group *of,
-                      size_t first, size_t count, bool *fine) {
+/* The row of (count) panels. Returns its height. */
+static double put_row(page *self, strut_box box, const group *of, size_t first, size_t count) {
   double caption = 0, height = of->height;
-  for (size_t i = first; i < first + count; i++) {
-    const strut_panel *panel = &of->panels[i];
-    caption = fmax(caption, put_caption(canvas, box, panel, false));
-    if (!of->views) height = fmax(height, chart_height(self->figure, canvas, panel, box.width));
+  strut_figure *figure = self->figure;
+  for (const strut_panel *p = of->panels + first; p < of->panels + first + count; p++) {
+    caption = fmax(caption, put_caption(self, box, p, false));
+    if (!of->views) height = fmax(height, chart_height(figure, self->canvas, p, box.width));
   }
-  for (size_t i = first; i < first + count && fine && *fine; i++, box.x += box.width + of->gap) {
+  for (size_t i = first; i < first + count && self->measured; i++, box.x += box.width + of->gap) {
     const strut_panel *panel = &of->panels[i];
     const strut_box below = {box.x, box.y + caption, box.width, height};
-    put_caption(canvas, box, panel, true);
-    *fine = strut_draw_panel(canvas, below, panel, !self->figure->one_legend, &self->figure->arena);
+    put_caption(self, box, panel, true);
+    figure->failed |=
+        !strut_draw_panel(self->canvas, below, panel, !figure->one_legend, &figure->arena);
     if (panel->shape_count) self->scale = strut_view_axes(below, panel).scale;
   }
   return caption + height;
 }
 
-static double put_group(page *self, strut_canvas *canvas, strut_box box, const group *of,
-                        bool *fine) {
+static double put_group(page *self, strut_box box, const group *of) {
   double top = box.y;
   for (size_t i = 0, count; i < of->count; i += count) {
     bool whole = of->panels[i].whole && !of->views;
@@ -148,61 +147,61 @@ static double put_group(page *self, strut_canvas *canvas, strut_box box, const g
     for (count = 1; !whole && count < of->columns && i + count < of->count; count++)
       if (!of->views && of->panels[i + count].whole) break;
     if (i) row.y = box.y += of->gap;
-    box.y += put_row(self, canvas, row, of, i, count, fine);
+    box.y += put_row(self, row, of, i, count);
   }
   return box.y - top;
 }
 
 /* ---- the page ---- */
 
-/* A text of the heading, which wraps; draws it if `draw`. Returns its height and the space below. */
-static double put_heading(strut_canvas *canvas, strut_box box, const char *text, strut_font font,
-                          bool draw) {
+/* A text of the heading, which wraps. Returns its height and the space below. */
+static double put_heading(const page *self, strut_box box, const char *text, strut_font font) {
   font.width = box.width;
-  if (draw) strut_draw_text(canvas, box.x, box.y, text, font);
-  return text && *text ? strut_text_box(canvas, text, font).height + LINE_GAP : 0;
+  strut_draw_text(self->canvas, box.x, box.y, text, font);
+  return text && *text ? strut_text_box(self->canvas, text, font).height + LINE_GAP : 0;
 }
 
-/* A scale bar below views so wide, keys, and the scale of colours; draws them if `draw`. Returns their height. */
-static double put_foot(const page *self, strut_canvas *canvas, strut_box box, double width,
-                       bool draw) {
+/* A scale bar below views so wide, keys, and the scale of colours. Returns their height. */
+static double put_foot(const page *self, strut_box box, double width) {
   const strut_figure *figure = self->figure;
   bool bar = figure->scale.name && figure->scale.high > figure->scale.low;
   bool stick = width > 0 && figure->yardstick;
   double row = bar ? STRUT_SCALE_HEIGHT : stick ? STICK : 0;
   double right = fmin(BAR_WIDTH, 0.5 * box.width);
-  strut_box key = strut_draw_key(canvas, box, figure->keys, figure->key_count, draw);
+  strut_box key = strut_draw_key(self->canvas, box, figure->keys, figure->key_count);
   bool beside = !stick && key.width + right < box.width;
   double height = beside ? fmax(key.height, row) : key.height + row;
   const strut_box place = {box.x + box.width - right, box.y + height - row, right, row};
-  if (draw && bar) strut_draw_colour_scale(canvas, place, &figure->scale);
-  if (draw && stick) strut_draw_yardstick(canvas, box.x, box.y + height, width, self->scale);
+  if (bar) strut_draw_colour_scale(self->canvas, place, &figure->scale);
+  if (stick) strut_draw_yardstick(self->canvas, box.x, box.y + height, width, self->scale);
   return height;
 }
 
-/* Lays all out and draws it if `fine`. Returns the height of the page. */
-static double put_page(page *self, strut_canvas *canvas, double width, bool *fine) {
+/* Lays all out on a canvas and draws it. Returns the height of the page. */
+static double put_page(page *self, strut_canvas *canvas, double width) {
   const strut_figure *figure = self->figure;
   strut_box box = {EDGE, EDGE, width - 2 * EDGE, 0};
-  bool draw = fine != NULL, foot = true;
+  bool foot = true;
   const strut_font bold = {.size = 9, .bold = true};
   const strut_font plain = {.size = 8,
                             .colour = figure->alarm ? strut_palette_thing(1) : strut_grey(0.3)};
-  box.y += put_heading(canvas, box, self->title, bold, draw);
-  box.y += put_heading(canvas, box, figure->note, plain, draw);
+  self->canvas = canvas;
+  box.y += put_heading(self, box, self->title, bold);
+  box.y += put_heading(self, box, figure->note, plain);
   if (box.y > EDGE) box.y += HEADING_GAP - LINE_GAP;
   const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
-  box.y += strut_draw_key(canvas, legend, self->legend.keys, self->legend.key_count, draw).height;
+  box.y += strut_draw_key(canvas, legend, self->legend.keys, self->legend.key_count).height;
   for (size_t i = 0; i < figure->panel_count;) {
     const group g = find_group(figure, i, box.width);
     if (i) box.y += GAP;
-    box.y += put_group(self, canvas, box, &g, fine);
+    box.y += put_group(self, box, &g);
     i += g.count;
     if (!foot || !(g.views || i == figure->panel_count)) continue;
     if (g.views || figure->key_count || figure->scale.name) box.y += 0.5 * GAP;
-    box.y += put_foot(self, canvas, box, g.views ? g.width : 0, draw);
+    box.y += put_foot(self, box, g.views ? g.width : 0);
     foot = false;
   }
+  self->measured = true;
   return box.y + EDGE;
 }
 
@@ -219,20 +218,19 @@ static strut_status open_pixels(int width, int height, double scale, strut_canva
 
 static strut_status draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
   page p;
-  strut_canvas *canvas = NULL;
+  strut_canvas *small = NULL, *canvas = NULL;
   double width = plot->width > 0 ? plot->width : PAGE;
-  bool fine = begin_page(&p, figure, plot);
-  strut_status status =
-      fine ? open_pixels(1, 1, 1.0, &canvas, error) : strut_no_memory(error, "while drawing");
-  double height = status ? 0 : put_page(&p, canvas, width, NULL);
-  strut_canvas_free(canvas);
-  canvas = NULL;
+  strut_status status = begin_page(&p, figure, plot) ? open_pixels(1, 1, 1.0, &small, error)
+                                                     : strut_no_memory(error, "while drawing");
+  double height = status ? 0 : put_page(&p, small, width);
   if (!status)
     status = strut_canvas_open(plot->path, width, height, p.title ? p.title : "", &canvas, error);
   if (!status && plot->texts) strut_canvas_keep_texts(canvas);
-  if (!status) put_page(&p, canvas, width, &fine);
+  if (!status) put_page(&p, canvas, width);
   if (!status)
-    status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");
+    status = figure->failed ? strut_no_memory(error, "while drawing")
+                            : strut_canvas_commit(canvas, error);
+  strut_canvas_free(small);
   strut_canvas_free(canvas);
   strut_arena_free(&p.legend.arena);
   return status;
@@ -240,11 +238,13 @@ static strut_status draw(const strut_plot *plot, strut_figure *figure, strut_err
 
 static const unsigned char *paint(strut_canvas *canvas, strut_figure *figure, size_t *stride) {
   page p;
-  bool fine = begin_page(&p, figure, &(strut_plot){.path = NULL});
   strut_canvas_clear(canvas, strut_grey(1));
-  if (fine) put_page(&p, canvas, strut_canvas_box(canvas).width, &fine);
+  if (begin_page(&p, figure, &(strut_plot){.path = NULL})) {
+    p.measured = true;
+    put_page(&p, canvas, strut_canvas_box(canvas).width);
+  }
   strut_arena_free(&p.legend.arena);
-  return fine ? strut_canvas_pixels(canvas, stride) : NULL;
+  return figure->failed || p.legend.failed ? NULL : strut_canvas_pixels(canvas, stride);
 }
 
 extern STRUT_API const strut_cairo_library strut_cairo_table;

@@ -193,6 +193,26 @@ static strut_status write_json(const strut_plot *plot, const strut_figure *figur
   return status;
 }
 
+/* Arrows of the ground's forces have one scale, unless it is given. */
+static void settle_arrows(strut_figure *figure) {
+  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
+  double largest = 0;
+  for (int pass = 0; pass < 2; pass++)
+    for (strut_panel *panel = figure->panels; panel < figure->panels + figure->panel_count; panel++)
+      for (strut_shape *s = panel->shapes; s < panel->shapes + panel->shape_count; s++) {
+        if (!s->forces || s->force_limit > 0) continue;
+        if (pass)
+          s->force_limit = largest;
+        else
+          largest =
+              fmax(largest, strut_largest(s->forces[0], 2 * (size_t)s->model->contacts.count));
+      }
+  if (largest > 0)
+    strut_add_key(figure, STRUT_KEY_ARROW, pen,
+                  strut_figure_text(figure, "contact force, up to %s",
+                                    strut_quantity_of(largest, 3, "N").text));
+}
+
 strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
   const strut_cairo_library *cairo = NULL;
   strut_c_locale locale = strut_c_locale_enter();
@@ -201,6 +221,7 @@ strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, str
     strut_axis_choose(&figure->panels[i].x, &plot->x);
     strut_axis_choose(&figure->panels[i].y, &plot->y);
   }
+  settle_arrows(figure);
   if (!status && figure->failed) status = strut_no_memory(error, "while drawing");
   if (!status && strut_picture_format_of(plot->path) == STRUT_PICTURE_JSON)
     status = write_json(plot, figure, error);

@@ -65,12 +65,6 @@ static bool overlap(const strut_box *first, const strut_box *second) {
          first->y < second->y + second->height && second->y < first->y + first->height;
 }
 
-static bool is_within(const strut_box *box, const strut_box *frame) {
-  return box->x >= frame->x && box->y >= frame->y &&
-         box->x + box->width <= frame->x + frame->width &&
-         box->y + box->height <= frame->y + frame->height;
-}
-
 /* The point of a box nearest to `at`, and its distance. */
 static double nearest_point(const strut_box *box, const double at[2], double point[2]) {
   point[0] = fmin(fmax(at[0], box->x), box->x + box->width);
@@ -88,13 +82,17 @@ typedef struct search {
   strut_box inside; /* and on the page */
   double width, height;
   strut_box best;
-  double cost; /* of the best place; HUGE_VAL: none yet */
+  double cost; /* of the best place, or a worse one */
 } search;
 
+/* True if it is inside and over no text. */
 static bool is_free(const search *self, const strut_box *box) {
-  if (!is_within(box, &self->inside)) return false;
+  const strut_box *in = &self->inside;
   const strut_box around = {box->x - BESIDE, box->y - BELOW, box->width + 2 * BESIDE,
                             box->height + 2 * BELOW};
+  if (box->x < in->x || box->y < in->y || box->x + box->width > in->x + in->width ||
+      box->y + box->height > in->y + in->height)
+    return false;
   for (size_t i = 0; i < self->labels->text_count; i++)
     if (overlap(&around, &self->labels->texts[i])) return false;
   return true;
@@ -105,7 +103,7 @@ static double confusion(const search *self, const strut_box *box) {
   double point[2], own = nearest_point(box, self->label->at, point), cost = 0.0;
   for (size_t i = 0; i < self->labels->count; i++) {
     const strut_label *other = &self->labels->list[i];
-    if (other == self->label || other->loose || self->label->loose ||
+    if (other == self->label ||
         memcmp(&other->inside, &self->label->inside, sizeof other->inside) != 0)
       continue;
     if (hypot(other->at[0] - self->label->at[0], other->at[1] - self->label->at[1]) < 0.5) continue;
@@ -136,31 +134,10 @@ static void try_place(search *self, double ring, int direction) {
            DISTANCE * ring + TURN * label->steady * turn + (ring >= LED ? LINE : 0.0));
 }
 
-/* For what names nothing at its place: wherever least is covered, the nearer the better. */
-static void try_everywhere(search *self) {
-  static const double STEP = 4.0, FAR = 0.01; /* [pt], cost of each pt */
-  const strut_box *in = &self->inside;
-  double point[2];
-  for (double y = in->y; y + self->height <= in->y + in->height; y += STEP)
-    for (double x = in->x; x + self->width <= in->x + in->width; x += STEP) {
-      const strut_box box = {x, y, self->width, self->height};
-      consider(self, box, FAR * nearest_point(&box, self->label->at, point));
-    }
-}
-
-static bool find_place(search *self) {
-  self->cost = self->label->loose ? HUGE_VAL : WORST;
-  if (self->label->loose) try_everywhere(self);
-  for (size_t r = 0; r < sizeof RINGS / sizeof *RINGS && !self->label->loose; r++)
-    for (int k = 0; k < DIRECTIONS; k++) /* by turns to both sides of the preferred direction */
-      try_place(self, RINGS[r], k % 2 ? (k + 1) / 2 : (DIRECTIONS - k / 2) % DIRECTIONS);
-  return self->best.width > 0;
-}
-
 /* The thin line from what is named to a label that is far from it. */
 static void draw_line(strut_canvas *canvas, const strut_label *label, const strut_box *box) {
   double end[2], length = nearest_point(box, label->at, end), start = 0.7 * label->gap;
-  if (label->loose || length < LED + 0.5 * label->gap) return;
+  if (length < LED + 0.5 * label->gap) return;
   double x = (end[0] - label->at[0]) / length, y = (end[1] - label->at[1]) / length;
   strut_draw_segment(canvas, label->at[0] + start * x, label->at[1] + start * y, end[0], end[1],
                      (strut_pen){.colour = strut_grey(0.45), .width = 0.4});
@@ -168,13 +145,11 @@ static void draw_line(strut_canvas *canvas, const strut_label *label, const stru
 
 /* The part of the page on which a label may be. */
 static strut_box find_inside(strut_canvas *canvas, const strut_label *label) {
-  strut_box page = widened(strut_canvas_box(canvas), -1.0), wanted = label->inside;
-  if (!(wanted.width > 0.0)) return page;
-  double right = fmin(page.x + page.width, wanted.x + wanted.width);
-  double bottom = fmin(page.y + page.height, wanted.y + wanted.height);
-  strut_box box = {fmax(page.x, wanted.x), fmax(page.y, wanted.y), 0, 0};
-  box.width = right - box.x, box.height = bottom - box.y;
-  return box;
+  const strut_box page = widened(strut_canvas_box(canvas), -1.0), *wanted = &label->inside;
+  if (!(wanted->width > 0.0)) return page;
+  double x = fmax(page.x, wanted->x), y = fmax(page.y, wanted->y);
+  return (strut_box){x, y, fmin(page.x + page.width, wanted->x + wanted->width) - x,
+                     fmin(page.y + page.height, wanted->y + wanted->height) - y};
 }
 
 /* Height of a text's letters, of that of its lines. */
@@ -182,14 +157,20 @@ static const double LETTERS = 0.86, MOST_WIDTH = 130.0; /* [1], [pt] */
 
 static bool place_label(const strut_labels *labels, const strut_label *label,
                         strut_canvas *canvas) {
-  search s = {
-      .labels = labels, .canvas = canvas, .label = label, .inside = find_inside(canvas, label)};
-  double most = fmin(s.inside.width, label->loose ? HUGE_VAL : MOST_WIDTH);
+  search s = {.labels = labels,
+              .canvas = canvas,
+              .label = label,
+              .inside = find_inside(canvas, label),
+              .cost = WORST};
+  double most = fmin(s.inside.width, MOST_WIDTH);
   strut_font font = label->font;
   if (strut_text_box(canvas, label->text, font).width > most) font.width = most, font.lines = 1;
   const strut_box text = strut_text_box(canvas, label->text, font);
   s.width = text.width, s.height = LETTERS * text.height;
-  if (!find_place(&s)) return false;
+  for (size_t r = 0; r < sizeof RINGS / sizeof *RINGS; r++)
+    for (int k = 0; k < DIRECTIONS; k++) /* by turns to both sides of the preferred direction */
+      try_place(&s, RINGS[r], k % 2 ? (k + 1) / 2 : (DIRECTIONS - k / 2) % DIRECTIONS);
+  if (!(s.best.width > 0)) return false;
   draw_line(canvas, label, &s.best);
   font.across = font.down = 0.5;
   strut_draw_text(canvas, s.best.x + 0.5 * s.best.width, s.best.y + 0.5 * s.best.height,
@@ -199,16 +180,12 @@ static bool place_label(const strut_labels *labels, const strut_label *label,
 
 /* ---- all labels ---- */
 
-/* Says how many labels found no place, where the page is emptiest. */
-static void note_omitted(strut_labels *labels, strut_canvas *canvas, size_t count) {
+/* Says in the page's lower left margin how many labels found no place. */
+static void note_omitted(strut_canvas *canvas, size_t count) {
   char text[60];
   snprintf(text, sizeof text, "%zu label%s left out", count, count > 1 ? "s" : "");
-  const strut_box page = strut_canvas_box(canvas);
-  const strut_label note = {.text = text,
-                            .font = {.size = 7, .colour = strut_grey(0.3), .halo = strut_grey(1)},
-                            .at = {page.x, page.y + page.height},
-                            .loose = true};
-  place_label(labels, &note, canvas);
+  strut_draw_text(canvas, 2, strut_canvas_box(canvas).height - 1, text,
+                  (strut_font){.size = 5.5, .colour = strut_grey(0.3), .down = 1});
 }
 
 void strut_labels_place(strut_labels *labels, strut_canvas *canvas) {
@@ -218,5 +195,5 @@ void strut_labels_place(strut_labels *labels, strut_canvas *canvas) {
       if (labels->list[i].priority == priority)
         omitted += !place_label(labels, &labels->list[i], canvas);
   labels->count = 0;
-  if (omitted) note_omitted(labels, canvas, omitted);
+  if (omitted) note_omitted(canvas, omitted);
 }

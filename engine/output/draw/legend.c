@@ -105,46 +105,34 @@ static const double LINE = 11.0, SIGN = 20.0, SIGN_GAP = 4.0, BETWEEN = 13.0; /*
 static const double DOT = 2.6, MARKER = 2.0, AREA = 7.0;
 static const strut_font letters = {.size = 7.5, .down = 0.5};
 
-/* How far right of the sign the text begins. */
-static double width_of_sign(const strut_key_item *item) {
-  return item->sign == STRUT_KEY_WORDS ? 0
-         : item->sign == STRUT_KEY_DOT ? 2 * DOT + SIGN_GAP
-                                       : SIGN + SIGN_GAP;
-}
-
 static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y) {
   const strut_pen rim = {.colour = strut_grey(0.4), .width = 0.4};
-  switch (item->sign) {
-    case STRUT_KEY_WORDS: break;
-    case STRUT_KEY_DOT: strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen); break;
-    case STRUT_KEY_LINE:
-      strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
-      if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
-      break;
-    case STRUT_KEY_ARROW: strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen); break;
-    case STRUT_KEY_AREA:
-      strut_draw_box(canvas, (strut_box){x, y - 0.5 * AREA, SIGN, AREA}, &item->fill, &rim);
-  }
+  const strut_box area = {x, y - 0.5 * AREA, SIGN, AREA};
+  if (item->sign == STRUT_KEY_DOT)
+    strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
+  if (item->sign == STRUT_KEY_LINE) strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
+  if (item->sign == STRUT_KEY_ARROW) strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen);
+  if (item->sign == STRUT_KEY_AREA) strut_draw_box(canvas, area, &item->fill, &rim);
+  if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
 }
 
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                         size_t count, bool draw) {
+                         size_t count) {
   double x = 0.0, y = 0.0, row = LINE, line = strut_text_box(canvas, "0", letters).height;
+  const double widths[] = {SIGN + SIGN_GAP, SIGN + SIGN_GAP, 2 * DOT + SIGN_GAP, SIGN + SIGN_GAP,
+                           0};
   strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
-    double sign = width_of_sign(&items[i]);
+    double sign = widths[items[i].sign]; /* how far right of it the text begins */
     strut_font font = letters;
     font.down = 0.0;
     if (box.width > 0 && sign + strut_text_box(canvas, items[i].text, letters).width > box.width)
       font.width = box.width - sign;
     const strut_box text = strut_text_box(canvas, items[i].text, font);
     if (x > 0 && x + sign + text.width > box.width) x = 0.0, y += row, row = LINE;
-    if (draw) {
-      draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
-      strut_draw_text(canvas, box.x + x + sign, box.y + y + 0.5 * (LINE - line), items[i].text,
-                      font);
-    }
+    draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
+    strut_draw_text(canvas, box.x + x + sign, box.y + y + 0.5 * (LINE - line), items[i].text, font);
     row = fmax(row, text.height + LINE - line);
     whole.width = fmax(whole.width, x + sign + text.width);
     x += sign + text.width + BETWEEN;

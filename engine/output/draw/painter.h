@@ -72,10 +72,10 @@ void strut_axes_point(const strut_axes *axes, const double place[2], double poin
 void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
 /**
  * Lays a key out in lines that fill the width of `box`, or as a column of items where that is 0, from its upper left
- * corner on; longer texts wrap. Draws it if `draw`. Returns the box that it takes.
+ * corner on; longer texts wrap. Returns the box that it takes.
  */
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                         size_t count, bool draw);
+                         size_t count);
 /** A scale bar with its length, such as "20 mm", at the lower left corner of a view so wide [pt], at its scale [pt/m]. */
 void strut_draw_yardstick(strut_canvas *canvas, double left, double bottom, double width,
                           double scale);

@@ -49,68 +49,60 @@ static strut_colour thing_colour(const drawing *d, double alpha) {
 
 /* ---- members ---- */
 
-/* A member's way: its straight parts from node to node or, of a wrapped one, from circle to circle. */
-typedef struct route {
-  const strut_member *member;
-  size_t count;    /* of parts */
-  uint32_t right;  /* guides passed on that side */
-  strut_wrap wrap; /* count 0: not wrapped */
-} route;
+enum { MOST_PARTS = STRUT_MOST_ELEMENT_NODES };
 
-static const double *node_of(const drawing *d, const route *r, size_t k) {
-  return d->q + 2 * strut_member_node(r->member, k);
-}
-
-static route find_route(const drawing *d, size_t member) {
-  route r = {.member = &d->model->scene->members[member]};
-  double p[STRUT_MOST_WRAPPED][2];
-  r.count = r.member->guide_count + 1;
-  if (!r.member->guide_count || !(r.member->guide_radius > 0.0)) return r;
-  for (size_t i = 0; i <= r.count; i++) memcpy(p[i], node_of(d, &r, i), sizeof p[i]);
-  r.right = strut_member_right_guides(d->model->scene, r.member);
-  strut_wrap_find((const double(*)[2])p, (int)r.count + 1, r.right, r.member->guide_radius,
-                  &r.wrap);
-  r.count = (size_t)r.wrap.count - 1;
-  return r;
-}
-
-/* The ends of a part on the page. */
-static void find_part(const drawing *d, const route *r, size_t k, double ends[2][2]) {
-  double place[2][2];
-  for (size_t end = 0; end < 2; end++) memcpy(place[end], node_of(d, r, k + end), sizeof *place);
-  if (r->wrap.count) {
-    int from = r->wrap.node[k];
-    double ux = r->wrap.ux[k], uy = r->wrap.uy[k], free = r->wrap.free[k];
-    double off = from > 0 ? r->member->guide_radius * strut_wrap_side(r->right, from) : 0.0;
-    memcpy(place[0], node_of(d, r, (size_t)from), sizeof *place);
-    place[0][0] += off * uy, place[0][1] -= off * ux;
-    place[1][0] = place[0][0] + free * ux, place[1][1] = place[0][1] + free * uy;
+/*
+ * The ends on the page of a member's straight parts: from node to node or, of a wrapped one, from circle to circle.
+ * Returns how many parts there are.
+ */
+static size_t find_parts(const drawing *d, size_t j, double (*ends)[2]) {
+  const strut_member *member = &d->model->scene->members[j];
+  const double radius = member->guide_count ? member->guide_radius : 0.0;
+  size_t count = member->guide_count + 1;
+  uint32_t right = 0;
+  strut_wrap wrap = {0};
+  double node[STRUT_MOST_WRAPPED][2];
+  for (size_t i = 0; i <= count; i++)
+    memcpy(node[i], d->q + 2 * strut_member_node(member, i), sizeof *node);
+  if (radius > 0.0) {
+    right = strut_member_right_guides(d->model->scene, member);
+    strut_wrap_find((const double(*)[2])node, (int)count + 1, right, radius, &wrap);
+    count = (size_t)wrap.count - 1;
   }
-  for (int end = 0; end < 2; end++) strut_axes_point(d->axes, place[end], ends[end]);
+  for (size_t k = 0; k < count; k++, ends += 2) {
+    memcpy(ends, node[k], 2 * sizeof *ends);
+    if (radius > 0.0) {
+      int from = wrap.node[k];
+      double off = from > 0 ? radius * strut_wrap_side(right, from) : 0.0;
+      ends[0][0] = node[from][0] + off * wrap.uy[k], ends[0][1] = node[from][1] - off * wrap.ux[k];
+      ends[1][0] = ends[0][0] + wrap.free[k] * wrap.ux[k];
+      ends[1][1] = ends[0][1] + wrap.free[k] * wrap.uy[k];
+    }
+    for (int end = 0; end < 2; end++) strut_axes_point(d->axes, ends[end], ends[end]);
+  }
+  return count;
 }
 
 /* The longest part of a member, where its name and its stop stand. */
 static void find_longest(const drawing *d, size_t member, double longest[2][2]) {
-  const route r = find_route(d, member);
-  double most = -1.0, ends[2][2];
-  for (size_t k = 0; k < r.count; k++) {
-    find_part(d, &r, k, ends);
-    double length = strut_settle_coordinate(strut_distance(ends[0], ends[1]));
+  double ends[2 * MOST_PARTS][2], most = -1.0;
+  size_t count = find_parts(d, member, ends);
+  for (size_t k = 0; k < count; k++) {
+    double length = strut_settle_coordinate(strut_distance(ends[2 * k], ends[2 * k + 1]));
     if (k && !(length > most)) continue;
-    memcpy(longest, ends, sizeof ends);
+    memcpy(longest, ends[2 * k], 2 * sizeof *ends);
     most = length;
   }
 }
 
 static drawing begin(strut_canvas *canvas, const strut_axes *axes, const strut_shape *shape) {
   drawing d = {canvas, axes, shape->model, shape->q, &shape->style, 1.0};
-  double sum = 0, ends[2][2];
+  double sum = 0, ends[2 * MOST_PARTS][2];
   size_t finite = 0;
   for (size_t j = 0; j < d.model->scene->member_count; j++) {
-    const route r = find_route(&d, j);
-    for (size_t k = 0; k < r.count; k++) {
-      find_part(&d, &r, k, ends);
-      double length = strut_distance(ends[0], ends[1]);
+    size_t count = find_parts(&d, j, ends);
+    for (size_t k = 0; k < count; k++) {
+      double length = strut_distance(ends[2 * k], ends[2 * k + 1]);
       if (isfinite(length)) sum += length, finite++;
     }
   }
@@ -129,23 +121,18 @@ static bool is_shaded(const strut_structure_style *style) {
   return style->colouring == STRUT_COLOUR_FORCE && style->values;
 }
 
-static strut_colour colour_of(const drawing *d, size_t j, bool slack) {
+static strut_pen pen_of(const drawing *d, size_t j, double width, bool slack) {
   enum { SHADES = 16 }; /* of either sign */
   const strut_structure_style *style = d->style;
-  strut_member_kind kind = d->model->scene->members[j].kind;
-  if (style->colouring == STRUT_COLOUR_ONE) return style->colour;
-  if (slack) return strut_grey(0.55);
-  if (is_shaded(style)) {
-    double part = style->limit > 0 ? style->values[j] / style->limit : 0;
-    return strut_palette_at(STRUT_COLOURS_SIGNED,
-                            isfinite(part) ? round(SHADES * part) / SHADES : 0, -1, 1);
-  }
-  return strut_kind_pen(kind, strut_member_is_driven(d->model->scene, j)).colour;
-}
-
-static strut_pen pen_of(const drawing *d, size_t j, double width, bool slack) {
-  bool fringe = d->style->fringe > 0.0;
-  strut_pen pen = {.colour = colour_of(d, j, slack), .width = width, .butt = slack || fringe};
+  bool fringe = style->fringe > 0.0, driven = strut_member_is_driven(d->model->scene, j);
+  strut_pen pen = {.colour = style->colour, .width = width, .butt = slack || fringe};
+  double part = is_shaded(style) && style->limit > 0 ? style->values[j] / style->limit : 0;
+  if (style->colouring != STRUT_COLOUR_ONE)
+    pen.colour = slack ? strut_grey(0.55)
+                 : is_shaded(style)
+                     ? strut_palette_at(STRUT_COLOURS_SIGNED,
+                                        isfinite(part) ? round(SHADES * part) / SHADES : 0, -1, 1)
+                     : strut_kind_pen(d->model->scene->members[j].kind, driven).colour;
   if (fringe)
     pen.dash[0] = pen.dash[1] = FRINGE_DASH;
   else if (slack)
@@ -167,22 +154,19 @@ static void draw_kind(const drawing *d, strut_member_kind kind, bool slack) {
   double width =
       strut_kind_pen(kind, false).width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
   const strut_pen casing = {.colour = strut_grey(0.1), .width = width + CASING * d->thin};
-  double ends[2 * BATCH][2];
+  double ends[2 * (BATCH + MOST_PARTS)][2];
   strut_pen last = casing;
   size_t count = 0;
   for (int pass = is_shaded(d->style) && kind != STRUT_CABLE ? 0 : 1; pass < 2; pass++)
     for (size_t j = 0; j < d->model->scene->member_count; j++) {
       if (d->model->scene->members[j].kind != kind || is_slack(d, j) != slack) continue;
       const strut_pen pen = pass ? pen_of(d, j, width, slack) : casing;
-      const route r = find_route(d, j);
-      for (size_t k = 0; k < r.count; k++) {
-        if (count == BATCH || !is_same_pen(&pen, &last)) {
-          strut_draw_segments(d->canvas, (const double(*)[2])ends, count, last);
-          count = 0;
-        }
-        last = pen;
-        find_part(d, &r, k, ends + 2 * count++);
+      if (count >= BATCH || !is_same_pen(&pen, &last)) {
+        strut_draw_segments(d->canvas, (const double(*)[2])ends, count, last);
+        count = 0;
       }
+      last = pen;
+      count += find_parts(d, j, ends + 2 * count);
     }
   strut_draw_segments(d->canvas, (const double(*)[2])ends, count, last);
 }
@@ -292,15 +276,14 @@ static void draw_cells(const drawing *d) {
 /* Bodies that may collide: discs or rods with round ends, as thick as they are. */
 static void draw_collisions(const drawing *d) {
   const strut_colour colour = thing_colour(d, 0.15);
-  double ends[2][2];
+  double ends[2 * MOST_PARTS][2];
   for (size_t i = 0; i < 2 * d->model->scene->collision_count; i++) {
     const strut_collision *collision = &d->model->scene->collisions[i / 2];
     int32_t node = collision->node[i % 2], member = collision->member[i % 2];
     double width = collision->thickness * d->axes->scale;
     if (node >= 0) draw_circle(d, d->q + 2 * node, 0.5 * width, colour, NULL);
     if (member < 0) continue;
-    const route r = find_route(d, (size_t)member);
-    find_part(d, &r, 0, ends);
+    find_parts(d, (size_t)member, ends);
     strut_draw_line(d->canvas, (const double(*)[2])ends, 2,
                     (strut_pen){.colour = colour, .width = width});
   }

@@ -20,7 +20,7 @@ typedef struct picture {
   size_t *list, count, cards; /* by energy: those that stand, and floppy ones; drawn */
   size_t floppy, aside;       /* of these; other stable ones, */
   bool none;                  /* which are drawn if none stands */
-  double size[2], force_limit, contact_limit, largest_energy;
+  double size[2], force_limit, largest_energy;
   strut_beyond beyond; /* force_limit */
   strut_figure figure;
 } picture;
@@ -36,10 +36,8 @@ static double find_height(const picture *self, size_t from, size_t to) {
   double height = (double)NAN;
   for (size_t i = 0; i < self->all->barrier_count; i++) {
     const strut_barrier *b = &self->all->barriers[i];
-    double known = isfinite(b->direct) ? b->direct : b->height;
-    if (&self->all->list[b->from] == card_of(self, from) &&
-        &self->all->list[b->to] == card_of(self, to) && isfinite(known))
-      height = known;
+    if ((size_t)b->from == self->list[from] && (size_t)b->to == self->list[to])
+      height = isfinite(b->direct) ? b->direct : b->height;
   }
   return height;
 }
@@ -56,14 +54,15 @@ static double find_pass(picture *self, size_t k, const double *level, const char
 }
 
 /* Its curve from level to level, smooth, which leaves the frame where it is higher than that. */
-static void add_arc(picture *self, strut_series *arcs, size_t k, const double *level, double top) {
+static void add_arc(picture *self, strut_panel *panel, size_t k, const double *level, double top) {
+  const strut_pen pen = {.colour = strut_grey(0.35), .width = 0.9};
+  strut_series *arc = strut_add_line(&self->figure, panel, STRUT_SERIES_LINE, pen);
   for (int i = 0; i < ARC; i++) {
     double t = (double)i / (ARC - 1), low = level[k + (t >= 0.5)];
     double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
-    strut_add_point(&self->figure, arcs, (double)k + LEVEL + t * (1 - 2 * LEVEL),
+    strut_add_point(&self->figure, arc, (double)k + LEVEL + t * (1 - 2 * LEVEL),
                     low + rise * (top - low));
   }
-  strut_add_point(&self->figure, arcs, (double)NAN, (double)NAN);
 }
 
 static void add_name(picture *self, strut_panel *panel, double x, double y, const char *text,
@@ -98,24 +97,21 @@ static void add_ladder(picture *self) {
   panel->x = (strut_axis){.low = -wider, .high = (double)cards - 1 + wider, .names = no_names};
   panel->y = (strut_axis){"energy above the lowest", "J", .low = range[0], .high = range[1]};
   strut_axis_settle(&panel->y, 0.2);
-  strut_series *series = strut_add_series(&self->figure, panel, NULL);
-  series->pen = (strut_pen){.colour = strut_grey(0.35), .width = 0.9};
   for (size_t k = 0; k + 1 < cards; k++) {
     if (!isfinite(top[k])) continue;
     double most = panel->y.high;
-    add_arc(self, series, k, level, top[k] <= most ? top[k] : 1.3 * most);
+    add_arc(self, panel, k, level, top[k] <= most ? top[k] : 1.3 * most);
     add_name(self, panel, (double)k + 0.5, top[k], heights[k], false);
   }
-  series = strut_add_series(&self->figure, panel, NULL);
-  series->pen = (strut_pen){.colour = strut_palette_thing(0), .width = 2, .butt = true};
   for (size_t k = 0; k < cards; k++) {
+    const strut_pen pen = {.colour = strut_palette_thing(0), .width = 2, .butt = true};
     double x = (double)k;
-    strut_add_point(&self->figure, series, x - LEVEL, level[k]);
-    strut_add_point(&self->figure, series, x + LEVEL, level[k]);
-    strut_add_point(&self->figure, series, (double)NAN, (double)NAN);
+    strut_add_segment(&self->figure, panel, STRUT_SERIES_LINE, pen,
+                      (const double[2]){x - LEVEL, level[k]},
+                      (const double[2]){x + LEVEL, level[k]});
     add_name(self, panel, x, level[k], card_of(self, k)->name, true);
   }
-  panel->remark = strut_figure_text(
+  panel->note = strut_figure_text(
       &self->figure, "%s", strut_beyond_text(&beyond, "barrier", "J", (strut_file_unit){0}, text));
 }
 
@@ -166,8 +162,6 @@ static void find_scales(picture *self) {
     const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, self->list[k]));
     for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
     most[k] = strut_largest(card->member_force, self->model->scene->member_count);
-    self->contact_limit =
-        fmax(self->contact_limit, strut_largest(card->normal, (size_t)card->contact_count));
   }
   double range[2] = {0, 0};
   self->beyond = strut_leave_out(most, self->cards, COLLAPSED, range);
@@ -199,7 +193,6 @@ static void add_card(picture *self, size_t i) {
                                         card->member_force, self->force_limit);
   shape->names = true;
   shape->forces = (const double(*)[2])force;
-  shape->force_limit = self->contact_limit;
 }
 
 static const char *describe_all(picture *self) {

@@ -41,8 +41,7 @@ typedef struct path_picture {
 /* True if the path scales this load. */
 static bool load_grows(const strut_path *path, const strut_load *load) {
   if (path->over != STRUT_PATH_OVER_LOAD) return false;
-  if (path->load) return strcmp(load->name, path->load) == 0;
-  return load->signal < 0;
+  return path->load ? strcmp(load->name, path->load) == 0 : load->signal < 0;
 }
 
 /* ---- the curve ---- */
@@ -57,13 +56,13 @@ static double largest_motion(const strut_path *path, int32_t coordinate) {
   return most;
 }
 
-/* True if the path's loads act on the node of a coordinate. */
-static bool is_loaded(const path_picture *picture, int32_t coordinate) {
+/* 2 if the path's loads act on the node of a coordinate, 1 if it is free, 0 else. */
+static int rank_of(const path_picture *picture, int32_t coordinate) {
   const strut_scene *scene = picture->model->scene;
   for (size_t l = 0; l < scene->load_count; l++)
     if (scene->loads[l].node == coordinate / 2 && load_grows(picture->path, &scene->loads[l]))
-      return true;
-  return false;
+      return 2;
+  return !picture->model->fixed[coordinate];
 }
 
 /*
@@ -76,7 +75,7 @@ static void choose_coordinate(path_picture *picture) {
   int best = -1;
   picture->coordinate = picture->path->coordinate;
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    int rank = is_loaded(picture, i) ? 2 : model->fixed[i] ? 0 : 1;
+    int rank = rank_of(picture, i);
     double here = fabs(largest_motion(picture->path, i));
     all = fmax(all, here);
     if (rank < best || (rank == best && here <= most * (1 + 1e-9))) continue;
@@ -107,28 +106,25 @@ static double enlarged(const path_picture *picture, const double *positions, int
 }
 
 /* Where the node whose motion is drawn is in a state. */
-static const double *way_at(const path_picture *picture, const strut_path_state *at,
-                            double place[2]) {
+static void find_node(const path_picture *picture, const strut_path_state *at, double place[2]) {
   int32_t node = picture->coordinate / 2 * 2;
   for (int32_t d = 0; d < 2; d++) place[d] = enlarged(picture, at->q, node + d);
-  return place;
 }
 
-/* Sets the next point of a curve, whose edge to the one after it is unstable or not, and of the path's way. */
+/* Adds the next point of a curve, whose edge to the one after it is unstable or not, and of the path's way. */
 static void add_point(path_picture *picture, strut_series *curve, strut_series *way,
                       const strut_path_state *at, bool unstable) {
   double place[2];
   find_place(picture, at, place);
   strut_add_point(&picture->figure, curve, place[0], place[1])->unstable = unstable;
-  if (way) way_at(picture, at, place);
+  find_node(picture, at, place);
   if (way) strut_add_point(&picture->figure, way, place[0], place[1]);
 }
 
-static path_stop *add_stop(path_picture *picture, const strut_path_state *at, const char *text) {
+static void add_stop(path_picture *picture, const strut_path_state *at, const char *letter,
+                     const char *text) {
   assert(picture->stop_count < MOST_STOPS);
-  path_stop *stop = &picture->stops[picture->stop_count++];
-  *stop = (path_stop){at, "", text};
-  return stop;
+  picture->stops[picture->stop_count++] = (path_stop){at, letter, text};
 }
 
 /* "limit point" or, of what happens to one thing, "left goes slack"; after what happens at the same place. */
@@ -143,16 +139,15 @@ static const char *describe_event(path_picture *picture, const strut_path_event 
 }
 
 static void add_event(path_picture *picture, const strut_path_event *event, bool same) {
-  if (same && picture->stop_count > 1 && !picture->events_left) {
-    path_stop *stop = &picture->stops[picture->stop_count - 1];
+  path_stop *stop = &picture->stops[picture->stop_count - 1];
+  char letter = (char)('A' + (int)picture->stop_count - 1);
+  if (same && *stop->letter && !picture->events_left)
     stop->text = describe_event(picture, event, stop->text);
-  } else if (picture->stop_count + 1 < MOST_STOPS) { /* one is kept for the end */
-    path_stop *stop = add_stop(picture, &event->at, describe_event(picture, event, ""));
-    stop->letter =
-        strut_figure_text(&picture->figure, "%c", (char)('A' + (int)picture->stop_count - 2));
-  } else {
+  else if (picture->stop_count + 1 < MOST_STOPS) /* one is kept for the end */
+    add_stop(picture, &event->at, strut_figure_text(&picture->figure, "%c", letter),
+             describe_event(picture, event, ""));
+  else
     picture->events_left++;
-  }
 }
 
 /* The path's points and events in the order of arc length. The start of an edge determines its stability. */
@@ -173,27 +168,27 @@ static void add_path(path_picture *picture, strut_series *curve, strut_panel *vi
     }
     add_point(picture, curve, way, &point->at, point->negative > 0);
     picture->unstable |= point->negative > 0 && k + 1 < path->point_count;
-    if (k == 0) add_stop(picture, &point->at, "start");
+    if (k == 0) add_stop(picture, &point->at, "", "start");
   }
-  add_stop(picture, &path->points[path->point_count - 1].at, "end");
+  add_stop(picture, &path->points[path->point_count - 1].at, "", "end");
 }
 
 static strut_pen line_pen(bool branch) {
   return (strut_pen){.colour = branch ? strut_palette_thing(0) : strut_grey(0.15), .width = 1.2};
 }
 
+/* The path above its branches. */
 static void add_curves(path_picture *picture, strut_panel *panel, strut_panel *view) {
   const strut_path *path = picture->path;
-  for (size_t i = 0; i <= path->branch_count; i++) {
-    bool branch = i < path->branch_count;
-    strut_series *curve = strut_add_series(&picture->figure, panel, NULL);
-    curve->pen = line_pen(branch);
-    for (size_t k = 0; branch && k < path->branches[i].point_count; k++) {
-      const strut_path_point *point = &path->branches[i].points[k];
-      add_point(picture, curve, NULL, &point->at, point->negative > 0);
-    }
-    if (!branch) add_path(picture, curve, view);
+  for (size_t i = 0; i < path->branch_count; i++) {
+    const strut_path *branch = &path->branches[i];
+    strut_series *curve =
+        strut_add_line(&picture->figure, panel, STRUT_SERIES_LINE, line_pen(true));
+    for (size_t k = 0; k < branch->point_count; k++)
+      add_point(picture, curve, NULL, &branch->points[k].at, branch->points[k].negative > 0);
   }
+  add_path(picture, strut_add_line(&picture->figure, panel, STRUT_SERIES_LINE, line_pen(false)),
+           view);
 }
 
 /* The unit that the scene gives the parameter in. */
@@ -210,20 +205,18 @@ static void name_axes(path_picture *picture, strut_panel *panel) {
   static const char *const directions[] = {"to the left", "to the right", "downwards", "upwards"};
   const strut_path *path = picture->path;
   bool force = path->reference > 0, all = path->over == STRUT_PATH_OVER_LOAD && !path->load;
-  const char *node = picture->model->scene->nodes[picture->coordinate / 2].name;
-  int most = strut_text_bytes(node, NAME), length = strut_text_bytes(path->name, NAME);
   const char *motion =
-      strut_figure_text(&picture->figure, "displacement of %.*s %s", most, node,
+      strut_figure_text(&picture->figure, "displacement of %s %s",
+                        picture->model->scene->nodes[picture->coordinate / 2].name,
                         directions[2 * (picture->coordinate % 2) + (picture->sign > 0)]);
   const char *of = path->over == STRUT_PATH_OVER_LOAD ? force ? "force of " : "factor of "
                    : path->coordinate >= 0            ? "reaction of "
                                                       : "";
-  const char *each = force && path->several ? "each load" : "the load";
-  const char *value =
-      strut_figure_text(&picture->figure, "%s%.*s", of, all ? 20 : length, all ? each : path->name);
+  const char *name = all ? force && path->several ? "each load" : "the load" : path->name;
   *(picture->upright ? &panel->y : &panel->x) = strut_axis_of(motion, "m");
   *(picture->upright ? &panel->x : &panel->y) =
-      strut_axis_in(value, force || path->coordinate >= 0 ? "N" : path->unit, shown_unit(picture));
+      strut_axis_in(strut_figure_text(&picture->figure, "%s%s", of, name),
+                    force || path->coordinate >= 0 ? "N" : path->unit, shown_unit(picture));
 }
 
 static strut_colour colour_of(const path_picture *picture, size_t stop) {
@@ -244,36 +237,28 @@ static void add_mark(path_picture *picture, strut_panel *panel, size_t stop,
 
 /* ---- the shapes ---- */
 
-/* The arrow of a load at the beginning [m]: outwards from its node, or from outside onto it. */
-static void load_arrow(const path_picture *picture, const strut_load *load, double largest,
-                       double ends[2][2]) {
-  const double *q = picture->path->points[0].at.q, *at = q + 2 * load->node;
-  double size = hypot(load->force[0], load->force[1]), outwards = 0.0;
-  double length = ARROW * picture->model->size * fmax(0.3, size / largest);
-  for (int32_t i = 0; i < 2 * picture->model->node_count; i++)
-    outwards += (at[i % 2] - q[i]) * load->force[i % 2];
-  for (int d = 0; d < 2; d++) {
-    double step = length * load->force[d] / size;
-    ends[0][d] = at[d] - (outwards > 0 ? 0.0 : step);
-    ends[1][d] = at[d] + (outwards > 0 ? step : 0.0);
-  }
-}
-
-/* The arrows of loads. */
+/* Arrows of loads at the beginning: outwards from the node, or from outside onto it. */
 static void add_loads(path_picture *picture, strut_panel *panel) {
-  const strut_scene *scene = picture->model->scene;
+  const strut_model *model = picture->model;
   const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.4};
+  const double *q = picture->path->points[0].at.q;
   double largest = 0.0;
-  for (size_t l = 0; l < scene->load_count; l++)
-    if (load_grows(picture->path, &scene->loads[l]))
-      largest = fmax(largest, hypot(scene->loads[l].force[0], scene->loads[l].force[1]));
-  for (size_t l = 0; l < scene->load_count && largest > 0; l++) {
-    const double *force = scene->loads[l].force;
-    double ends[2][2];
-    if (!load_grows(picture->path, &scene->loads[l]) || !(hypot(force[0], force[1]) > 0)) continue;
-    load_arrow(picture, &scene->loads[l], largest, ends);
-    strut_add_segment(&picture->figure, panel, STRUT_SERIES_ARROW, pen, ends[0], ends[1]);
-  }
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t l = 0; l < model->scene->load_count; l++) {
+      const strut_load *load = &model->scene->loads[l];
+      double size = hypot(load->force[0], load->force[1]), outwards = 0.0, ends[2][2];
+      if (!load_grows(picture->path, load) || !(size > 0)) continue;
+      largest = fmax(largest, size);
+      for (int32_t i = 0; i < 2 * model->node_count; i++)
+        outwards += (q[2 * load->node + i % 2] - q[i]) * load->force[i % 2];
+      for (int d = 0; d < 2; d++) {
+        double step = ARROW * model->size * fmax(0.3, size / largest) * load->force[d] / size;
+        ends[0][d] = q[2 * load->node + d] - (outwards > 0 ? 0.0 : step);
+        ends[1][d] = ends[0][d] + step;
+      }
+      if (pass)
+        strut_add_segment(&picture->figure, panel, STRUT_SERIES_ARROW, pen, ends[0], ends[1]);
+    }
 }
 
 /* All stops' shapes over each other. */
@@ -283,8 +268,7 @@ static void add_shapes(path_picture *picture, strut_panel *panel) {
   for (size_t i = 0; i < picture->stop_count; i++) {
     const strut_path_state *at = picture->stops[i].at;
     double *q = strut_figure_numbers(figure, NULL, (size_t)picture->model->length), place[2];
-    double *taut =
-        strut_figure_numbers(figure, NULL, members); /* of cables; other members ignore it */
+    double *taut = strut_figure_numbers(figure, NULL, members); /* for cables */
     for (int32_t c = 0; q && c < picture->model->length; c++) q[c] = enlarged(picture, at->q, c);
     for (size_t j = 0; taut && j < members; j++) taut[j] = at->force[j] > 0 ? 1.0 : 0.0;
     strut_shape *shape = strut_add_shape(figure, panel, picture->model, q);
@@ -294,38 +278,38 @@ static void add_shapes(path_picture *picture, strut_panel *panel) {
                                            .thinness = 0.3,
                                            .no_supports = i > 0};
     shape->ground = shape->names = i == 0;
-    add_mark(picture, panel, i, way_at(picture, at, place));
+    find_node(picture, at, place);
+    add_mark(picture, panel, i, place);
   }
 }
 
 /* ---- the figure ---- */
 
-/* A stop with the value there. */
-static const char *describe_stop(path_picture *picture, const path_stop *stop) {
-  double reference = picture->path->reference;
-  double value = stop->at->factor * (reference > 0 ? reference : 1.0);
-  const char *unit = reference > 0 ? "N" : *picture->path->unit ? picture->path->unit : "1";
-  return strut_figure_text(&picture->figure, "%s%s%s, %s", stop->letter, *stop->letter ? ": " : "",
-                           stop->text,
-                           strut_quantity_shown(value, 5, unit, shown_unit(picture)).text);
-}
-
 static void add_keys(path_picture *picture) {
   strut_figure *figure = &picture->figure;
+  const strut_path *path = picture->path;
   size_t more = picture->events_left;
+  bool force = path->reference > 0;
   strut_pen pen = {.colour = strut_grey(0.1), .width = 0.6};
   for (size_t i = 0; i < picture->stop_count; i++) {
     const path_stop *stop = &picture->stops[i];
-    strut_key_item *item = strut_add_key(figure, STRUT_KEY_DOT, pen, describe_stop(picture, stop));
-    item->fill.colour = colour_of(picture, i);
+    const strut_rounded_quantity value =
+        strut_quantity_shown(stop->at->factor * (force ? path->reference : 1.0), 5,
+                             force         ? "N"
+                             : *path->unit ? path->unit
+                                           : "1",
+                             shown_unit(picture));
+    strut_add_key(figure, STRUT_KEY_DOT, pen,
+                  strut_figure_text(figure, "%s%s%s, %s", stop->letter, *stop->letter ? ": " : "",
+                                    stop->text, value.text))
+        ->fill.colour = colour_of(picture, i);
   }
   if (more)
     strut_add_key(figure, STRUT_KEY_WORDS, pen,
                   strut_figure_text(figure, "and %zu more event%s", more, more > 1 ? "s" : ""));
   pen = (strut_pen){.colour = strut_grey(0.15), .width = 1.2, .dash = {3, 2}, .butt = true};
   if (picture->unstable) strut_add_key(figure, STRUT_KEY_LINE, pen, "unstable");
-  if (picture->path->branch_count)
-    strut_add_key(figure, STRUT_KEY_LINE, line_pen(true), "branches");
+  if (path->branch_count) strut_add_key(figure, STRUT_KEY_LINE, line_pen(true), "branches");
   if (picture->larger > 1)
     strut_add_key(
         figure, STRUT_KEY_WORDS, pen,

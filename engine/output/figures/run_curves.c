@@ -181,10 +181,10 @@ static double variation(const block *self, size_t item, size_t first) {
 static size_t choose_curves(const block *self, size_t chosen[MOST_CURVES]) {
   double *lively = strut_figure_numbers(self->run->page, NULL, self->count);
   size_t count = 0;
-  for (size_t i = 0; lively && i < self->count; i++) {
-    bool always = self->of == DRIVE || (self->of == DISPLACEMENT && i == 0);
-    lively[i] = always ? HUGE_VAL : variation(self, i, self->first);
-  }
+  for (size_t i = 0; lively && i < self->count; i++)
+    lively[i] = self->of == DRIVE || (self->of == DISPLACEMENT && i == 0)
+                    ? HUGE_VAL
+                    : variation(self, i, self->first);
   for (size_t i = 0; lively && i < self->count; i++) {
     size_t rank = 0;
     for (size_t k = 0; k < self->count; k++)
@@ -279,22 +279,21 @@ static bool add_paths(const strut_run_scene *run, size_t first, strut_panel *pan
   for (size_t f = first; f < run->frames; f++)
     for (size_t i = 0; i < 2 * nodes; i++)
       seen = seen || fabs(strut_run_positions(run, f)[i] - end[i]) > least;
-  if (!seen || nodes > MOST_PATHS) return false;
-  for (size_t i = 0; i < nodes; i++) {
+  for (size_t i = 0; i < nodes && seen && nodes <= MOST_PATHS; i++) {
     strut_series *way =
         strut_add_line(run->page, panel, STRUT_SERIES_SEQUENCE, (strut_pen){.width = 0.9});
-    for (size_t f = first; f < run->frames; f++)
-      strut_add_point(run->page, way, strut_run_positions(run, f)[2 * i],
-                      strut_run_positions(run, f)[2 * i + 1]);
+    for (size_t f = first; f < run->frames; f++) {
+      const double *at = strut_run_positions(run, f) + 2 * i;
+      strut_add_point(run->page, way, at[0], at[1]);
+    }
   }
-  return true;
+  return seen && nodes <= MOST_PATHS;
 }
 
 const char *strut_run_overview(strut_run_scene *run, strut_figure *figure) {
   static const kind order[] = {DISPLACEMENT, NORMALS, DRIVE, HEIGHTS, ANGLES, FORCES};
   size_t last = run->frames - 1, first = strut_run_first(run, 1, PART);
   size_t most = run->figure->plot.width >= WIDE ? MOST_PANELS : MOST_STACKED;
-  strut_run_expect_frame(run, last);
   strut_panel *panel = strut_add_panel(figure);
   strut_run_add_shape(run, panel, last)->names = true;
   panel->bounds = bounds_of(run, first);

@@ -163,15 +163,6 @@ void strut_run_add_ground(const strut_run_scene *run, strut_bounds *bounds) {
 
 static const double STANDING = 1e-6; /* of the model's size over the whole run: it stands still */
 
-void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
-  const strut_trajectory *trajectory = run->motion;
-  if (trajectory->contact)
-    run->contact_limit =
-        fmax(run->contact_limit,
-             strut_largest(trajectory->contact + 2 * frame * trajectory->contact_count,
-                           2 * trajectory->contact_count));
-}
-
 strut_shape *strut_run_add_shape(const strut_run_scene *run, strut_panel *panel, size_t frame) {
   const strut_trajectory *trajectory = run->motion;
   strut_shape *shape =
@@ -179,34 +170,21 @@ strut_shape *strut_run_add_shape(const strut_run_scene *run, strut_panel *panel,
   shape->style.time = trajectory->time ? trajectory->time[frame] : 0.0;
   shape->ground = true;
   shape->moving = trajectory->time != NULL;
-  shape->force_limit = run->contact_limit;
   if (trajectory->force) {
     shape->style.colouring = STRUT_COLOUR_FORCE;
     shape->style.values = shape->style.slack_forces =
         trajectory->force + frame * trajectory->member_count;
     shape->style.limit = run->force_limit;
   }
-  if (trajectory->contact && run->contact_limit > 0)
+  if (trajectory->contact)
     shape->forces =
         (const double(*)[2])(trajectory->contact + 2 * frame * trajectory->contact_count);
   return shape;
 }
 
 void strut_run_add_scales(const strut_run_scene *run) {
-  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
   run->page->yardstick = true;
   run->page->scale = strut_force_scale(run->motion->force ? run->force_limit : 0, &run->beyond);
-  if (run->contact_limit > 0)
-    strut_add_key(run->page, STRUT_KEY_ARROW, pen,
-                  strut_figure_text(run->page, "contact force, up to %s",
-                                    strut_quantity_of(run->contact_limit, 3, "N").text));
-}
-
-/* The measured velocity; 0 for a structure that stands still. */
-static double shown_velocity(const strut_run_scene *run) {
-  const strut_summary *summary = run->summary;
-  double path = fabs(summary->velocity) * fmax(summary->duration, STRUT_RUN_MOMENT);
-  return path > STANDING * run->model->size ? summary->velocity : 0;
 }
 
 /* ---- the whole figure ---- */
@@ -219,7 +197,8 @@ static const char *describe_run(const strut_run_scene *run, const char *what) {
                              summary->status == STRUT_DIVERGED ? "diverged" : "stopped",
                              strut_quantity_of(summary->duration, 4, "s").text, what);
   if (!views[run->figure->view].velocity || !summary || !isfinite(summary->velocity)) return what;
-  double v = shown_velocity(run);
+  double way = fabs(summary->velocity) * fmax(summary->duration, STRUT_RUN_MOMENT);
+  double v = way > STANDING * run->model->size ? summary->velocity : 0;
   return strut_figure_text(run->page, "%.400s; velocity of %.60s %s%s", what,
                            strut_run_measured_name(run), strut_quantity_of(v, 4, "m/s").text,
                            v > 0   ? " \xe2\x86\x92"

@@ -76,8 +76,9 @@ static const double FAR = 1; /* sizes of the structure over which the window mov
 typedef struct making {
   strut_film *film;
   strut_run_scene run;
-  double travel[2];  /* of the window during the film [m] */
-  strut_bounds view; /* of all shapes in the first picture's window */
+  double travel[2];     /* of the window during the film [m] */
+  strut_bounds view;    /* of all shapes in the first picture's window */
+  double contact_limit; /* largest force of the ground [N] */
 } making;
 
 static size_t frame_at(const making *self, size_t i) {
@@ -142,7 +143,7 @@ static void fill(const making *self, size_t i, strut_figure *page) {
   panel->margin = MARGIN;
   panel->height = HEIGHT;
   add_marks(self, page, panel);
-  strut_run_add_shape(&run, panel, frame);
+  strut_run_add_shape(&run, panel, frame)->force_limit = self->contact_limit;
   if (fabs(moved) < 1e-9 * run.model->size) moved = 0;
   page->title = *run.model->scene->name ? run.model->scene->name : " "; /* its line stays */
   page->scale = strut_force_scale(run.motion->force ? run.force_limit : 0, &run.beyond);
@@ -204,7 +205,7 @@ strut_status strut_film_make(strut_film *film, const strut_model *model,
   film->motion = strut_run_time_from(&m.run, 0);
   film->frames = 1 + (size_t)floor(film->motion / film->speed * film->fps + 1e-9);
   film->every = m.run.frames > 1 ? film->motion / (double)(m.run.frames - 1) : 0;
-  for (size_t i = 0; i < m.run.frames; i++) strut_run_expect_frame(&m.run, i);
+  m.contact_limit = strut_largest(motion->contact, 2 * m.run.frames * motion->contact_count);
   find_view(&m);
   strut_run_find_limits(&m.run);
   strut_status status =

@@ -11,13 +11,12 @@ typedef struct strut_run_scene {
   const strut_model *model;
   const strut_trajectory *motion;
   const strut_summary *summary;
-  size_t frames;        /* that can be drawn; a diverged run ends earlier */
-  double period;        /* of the motion [s]; 0: not periodic, or too few frames */
-  int32_t repeats;      /* periods of the drive in it */
-  double force_limit;   /* of the colours: largest force of a member in any frame [N] */
-  strut_beyond beyond;  /* but for frames with far larger ones */
-  double contact_limit; /* largest force of the ground in the frames drawn [N] */
-  strut_figure *page;   /* that is filled in */
+  size_t frames;       /* that can be drawn; a diverged run ends earlier */
+  double period;       /* of the motion [s]; 0: not periodic, or too few frames */
+  int32_t repeats;     /* periods of the drive in it */
+  double force_limit;  /* of the colours: largest force of a member in any frame [N] */
+  strut_beyond beyond; /* but for frames with far larger ones */
+  strut_figure *page;  /* that is filled in */
 } strut_run_scene;
 
 /** Shorter than the time between any two frames [s]. */
@@ -48,11 +47,9 @@ strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame);
 /** Widens the bounds to the ground where it is near. */
 void strut_run_add_ground(const strut_run_scene *run, strut_bounds *bounds);
 
-/** Widens the scale of the contact arrows to a frame, before any is drawn. */
-void strut_run_expect_frame(strut_run_scene *run, size_t frame);
 /** Adds the frame's structure in colours of force, on the ground, with the forces of the ground. */
 strut_shape *strut_run_add_shape(const strut_run_scene *run, strut_panel *panel, size_t frame);
-/** Scale bar, scale of the colours of force, and the key entry of the contact arrows, where there are some. */
+/** Scale bar, and scale of the colours of force. */
 void strut_run_add_scales(const strut_run_scene *run);
 
 /** Fill in the panels of each view with what stands below them, and say what it shows. */

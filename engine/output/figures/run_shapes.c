@@ -19,15 +19,8 @@ static const double FRINGE =
 static bool find_other(const strut_run_scene *run, strut_run_scene *other) {
   *other = (strut_run_scene){
       .figure = run->figure, .model = run->model, .motion = run->figure->other, .page = run->page};
-  if (!other->motion || !other->motion->position) return false;
-  strut_run_count_frames(other);
+  if (other->motion && other->motion->position) strut_run_count_frames(other);
   return other->frames > 0;
-}
-
-static void add_other(const strut_run_scene *other, strut_panel *panel, size_t frame) {
-  strut_shape *shape =
-      strut_add_ghost(other->page, panel, other->model, strut_run_coordinates(other, frame), 0.25);
-  shape->style.fringe = FRINGE;
 }
 
 /* "; thick dashes: NAME", or "". */
@@ -41,37 +34,27 @@ static double enlargement(const strut_run_scene *run, int axis) {
   return run->figure->scale[axis] > 0 ? run->figure->scale[axis] : 1;
 }
 
-static bool is_enlarged(const strut_run_scene *run) {
-  return enlargement(run, 0) != 1 || enlargement(run, 1) != 1;
-}
-
-static bool can_touch(const strut_run_scene *run, size_t node) {
-  for (int32_t i = 0; i < run->model->contacts.count; i++)
-    if ((size_t)run->model->contacts.entry[i].node == node) return true;
-  return false;
-}
-
-/* The centre of a node's enlargement: its mean position or, true, of a node that touches the ground,
-   the point of the ground below, so that contact is drawn as contact. */
-static bool find_anchor(const strut_run_scene *run, size_t node, double at[2]) {
-  double lowest = HUGE_VAL, count = (double)(run->frames - strut_run_first(run, 1, 1));
-  at[0] = at[1] = 0;
-  for (size_t f = strut_run_first(run, 1, 1); f < run->frames; f++) {
-    const double *p = strut_run_positions(run, f) + 2 * node;
-    for (int d = 0; d < 2; d++) at[d] += p[d] / count;
-    if (run->model->scene->ground.present)
-      lowest = fmin(lowest, p[1] - strut_run_ground_at(run, p[0]));
-  }
-  if (!(lowest < CLOSED * run->model->size) || !can_touch(run, node)) return false;
-  at[1] = strut_run_ground_at(run, at[0]);
-  return true;
-}
-
-/* The centres of enlargement as coordinates; NULL: out of memory. */
+/*
+ * The nodes' mean positions, about which their motion is enlarged, as coordinates; of a node that touches the ground the
+ * point of the ground below, so that contact is drawn as contact. NULL: out of memory.
+ */
 static double *find_anchors(const strut_run_scene *run, bool *grounded) {
+  const strut_contact_table *contacts = &run->model->contacts;
+  size_t first = strut_run_first(run, 1, 1);
   double *rest = strut_figure_numbers(run->page, NULL, (size_t)run->model->length);
-  for (size_t i = 0; rest && i < run->motion->node_count; i++)
-    *grounded |= find_anchor(run, i, rest + 2 * i);
+  for (size_t i = 0; rest && i < run->motion->node_count; i++) {
+    double *at = rest + 2 * i, lowest = HUGE_VAL;
+    bool touches = false;
+    for (size_t f = first; f < run->frames; f++) {
+      const double *p = strut_run_positions(run, f) + 2 * i;
+      for (int d = 0; d < 2; d++) at[d] += p[d] / (double)(run->frames - first);
+      lowest = fmin(lowest, p[1] - strut_run_ground_at(run, p[0]));
+    }
+    for (int32_t k = 0; k < contacts->count && run->model->scene->ground.present; k++)
+      touches |= (size_t)contacts->entry[k].node == i && lowest < CLOSED * run->model->size;
+    if (touches) at[1] = strut_run_ground_at(run, at[0]);
+    *grounded |= touches;
+  }
   return rest;
 }
 
@@ -105,7 +88,7 @@ static const char *describe_period(const strut_run_scene *run, bool grounded) {
                              (int)run->repeats);
   note = strut_figure_text(run->page, "node trajectories over %s%s%s, dark to bright%s", over,
                            strut_quantity_of(span, 4, "s").text, *over ? ")" : "", other_text(run));
-  if (!is_enlarged(run)) return note;
+  if (enlargement(run, 0) == 1 && enlargement(run, 1) == 1) return note;
   return strut_figure_text(
       run->page,
       "%s, enlarged %g times along x and %g times along y about each node's mean position "
@@ -117,12 +100,12 @@ static const char *describe_period(const strut_run_scene *run, bool grounded) {
 const char *strut_run_period(strut_run_scene *run, strut_figure *figure) {
   strut_run_scene other;
   bool grounded = false, periodic = run->period > 0, ignored = false;
+  bool enlarged = enlargement(run, 0) != 1 || enlargement(run, 1) != 1;
   const double *centres = find_anchors(run, &grounded);
   strut_panel *panel = strut_add_panel(figure);
   /* Mean positions are no shape of a large motion: only enlarged paths are drawn over them. */
-  strut_shape *shape =
-      strut_add_shape(figure, panel, run->model,
-                      is_enlarged(run) ? centres : strut_run_coordinates(run, run->frames - 1));
+  strut_shape *shape = strut_add_shape(
+      figure, panel, run->model, enlarged ? centres : strut_run_coordinates(run, run->frames - 1));
   shape->style = (strut_structure_style){
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.72), .thinness = 0.5};
   shape->ground = shape->names = true;
@@ -147,9 +130,10 @@ const char *strut_run_period(strut_run_scene *run, strut_figure *figure) {
 enum { USUAL = 6 };
 
 static const double COMMON = 2.2; /* shapes closer than this, in their sizes, share a window */
+static const double SEEN = 2e-3;  /* of the drawing: least visible motion of the measured point */
+static const double MARGIN = 15;  /* [pt] */
+
 static const double LEVEL = 3;
-static const double SEEN = 2e-3; /* of the drawing: least visible motion of the measured point */
-static const double MARGIN = 15; /* [pt] */
 
 /* The panels, and what they have in common. */
 typedef struct grid {
@@ -157,9 +141,8 @@ typedef struct grid {
   size_t *frame;       /* (count) */
   strut_panel *panels; /* (count) with the bounds of their shapes */
   bool moves;          /* the measured point moves visibly */
-  bool common[2];      /* all panels show the same range along that axis */
   strut_bounds all;
-  double size[2]; /* of that range, or of the largest shape [m] */
+  double size[2]; /* of the largest shape [m] */
 } grid;
 
 /* Default times are spread evenly over the record. If many periods lie between them, the phase
@@ -201,13 +184,13 @@ static void find_cells(strut_run_scene *run, grid *self) {
     if (two) {
       size_t frame = strut_run_nearest(&other, run->motion->time[self->frame[i]]);
       strut_bounds_add(&panel->bounds, run->model, strut_run_positions(&other, frame));
-      add_other(&other, panel, frame);
+      strut_add_ghost(run->page, panel, run->model, strut_run_coordinates(&other, frame), 0.25)
+          ->style.fringe = FRINGE;
     }
     strut_run_add_ground(run, &panel->bounds);
     strut_bounds_widen(&self->all, panel->bounds.low, panel->bounds.high);
     for (int d = 0; d < 2; d++)
       self->size[d] = fmax(self->size[d], panel->bounds.high[d] - panel->bounds.low[d]);
-    strut_run_expect_frame(run, self->frame[i]);
   }
   self->panels = run->page->panels;
   self->count = run->page->failed ? 0 : count;
@@ -219,26 +202,21 @@ static double way_to(const strut_run_scene *run, const grid *self, size_t i) {
 }
 
 /*
- * What a cell shows is as large as what all others do: the same where the shapes are close together, on level ground even
- * those farther apart above each other; else about its own middle, from its foot on.
+ * Shapes that are close together have one window; of others each is about its own middle and from its foot on, but on
+ * level ground all have the same height above it.
  */
 static void share_bounds(const strut_run_scene *run, grid *self) {
   const strut_ground *ground = &run->model->scene->ground;
   double most = COMMON * fmax(self->size[0], self->size[1]);
-  for (size_t i = 0; i < self->count; i++)
-    self->moves =
-        self->moves || fabs(way_to(run, self, i)) > SEEN * strut_bounds_extent(&self->all);
-  for (int d = 0; d < 2; d++) {
-    double together = self->all.high[d] - self->all.low[d];
-    bool level = d == 1 && ground->present && ground->slope == 0;
-    self->common[d] = together <= (level ? LEVEL : 1) * most;
-    if (self->common[d]) self->size[d] = together;
-  }
+  double high = self->all.high[1] - self->all.low[1];
+  bool level = ground->present && ground->slope == 0 && high <= LEVEL * most;
+  run->page->shared_axes = strut_bounds_extent(&self->all) <= most;
+  if (level) self->size[1] = high;
   for (size_t i = 0; i < self->count; i++) {
+    self->moves |= fabs(way_to(run, self, i)) > SEEN * strut_bounds_extent(&self->all);
     strut_bounds *own = &self->panels[i].bounds;
-    strut_bounds_share(own, self->size);
-    for (int d = 0; d < 2; d++)
-      if (self->common[d]) own->low[d] = self->all.low[d], own->high[d] = self->all.high[d];
+    if (!run->page->shared_axes) strut_bounds_share(own, self->size);
+    if (level) own->low[1] = self->all.low[1], own->high[1] = self->all.high[1];
   }
 }
 
@@ -252,7 +230,7 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
                                    far ? strut_quantity_of(way, 3, "m").text : "");
   strut_run_add_shape(run, panel, self->frame[i])->names = true;
   panel->margin = MARGIN;
-  if (!self->common[0] || !self->moves) return;
+  if (!run->page->shared_axes || !self->moves) return;
   /* Where the measured point began. */
   strut_add_segment(
       run->page, panel, STRUT_SERIES_LINE, (strut_pen){strut_grey(0.6), 0.6, {2, 2}, false},
@@ -264,14 +242,14 @@ const char *strut_run_snapshots(strut_run_scene *run, strut_figure *figure) {
   find_cells(run, &g);
   share_bounds(run, &g);
   for (size_t i = 0; i < g.count; i++) fill_cell(run, &g, i);
-  bool marked = g.common[0] && g.moves;
+  bool marked = figure->shared_axes && g.moves;
   figure->columns = g.count;
   figure->aspect = 0.95;
   strut_run_add_scales(run);
   return strut_figure_text(figure, "%zu snapshot%s to the same scale%s%.200s%s", g.count,
                            g.count == 1 ? "" : "s",
-                           marked        ? "; dashed: initial position of "
-                           : g.common[0] ? ""
-                                         : "; each centred",
+                           marked                ? "; dashed: initial position of "
+                           : figure->shared_axes ? ""
+                                                 : "; each centred",
                            marked ? strut_run_measured_name(run) : "", other_text(run));
 }

@@ -15,8 +15,8 @@ static const double MARGIN = 20; /* [pt] */
 static double *displace(strut_figure *figure, const strut_model *model, const double *positions,
                         const double *motion, double swing) {
   double most = 0.0, *moved = strut_figure_numbers(figure, positions, (size_t)model->length);
-  for (int32_t i = 0; i < model->node_count; i++)
-    most = fmax(most, hypot(motion[2 * i], motion[2 * i + 1]));
+  for (int32_t i = 0; i < 2 * model->node_count; i += 2)
+    most = fmax(most, hypot(motion[i], motion[i + 1]));
   for (int32_t i = 0; i < model->length && most > 0 && moved; i++)
     moved[i] += swing / most * motion[i];
   return moved;
@@ -65,16 +65,6 @@ typedef struct picture {
   strut_figure figure;
 } picture;
 
-/* True if member forces exceed the effect of rounding in their lengths. */
-static bool forces_told(const picture *self) {
-  const strut_member_table *m = &self->model->members;
-  size_t members = self->model->scene->member_count;
-  double scale = 0;
-  for (size_t j = 0; j < members; j++) scale = fmax(scale, m->stiffness[j] * m->rest[j]);
-  return self->rigidity->prestressed &&
-         strut_largest(self->rigidity->force, members) > 1e-12 * scale;
-}
-
 static strut_panel *add_panel(picture *self, const char *title) {
   strut_panel *panel = strut_add_panel(&self->figure);
   panel->title = title;
@@ -90,6 +80,20 @@ static void add_forces(picture *self, const char *title, const double *force) {
       ->names = true;
 }
 
+/* The member forces, where they exceed the effect of rounding in lengths. Returns how many panels that are. */
+static int32_t add_prestress(picture *self) {
+  const strut_member_table *m = &self->model->members;
+  size_t members = self->model->scene->member_count;
+  double scale = 0, limit = strut_largest(self->rigidity->force, members);
+  for (size_t j = 0; j < members; j++) scale = fmax(scale, m->stiffness[j] * m->rest[j]);
+  if (!self->rigidity->prestressed || !(limit > 1e-12 * scale)) return 0;
+  add_forces(
+      self,
+      strut_figure_text(&self->figure, "forces, up to %s", strut_quantity_of(limit, 3, "N").text),
+      self->rigidity->force);
+  return 1;
+}
+
 /* The shape in grey, displaced by a small motion. */
 static void add_mechanism(picture *self, int32_t number) {
   const strut_mechanism *mechanism = &self->rigidity->mechanisms.list[number];
@@ -102,13 +106,12 @@ static void add_mechanism(picture *self, int32_t number) {
   strut_panel *panel =
       add_panel(self, strut_figure_text(&self->figure, "mechanism %d, %s", (int)number + 1,
                                         strut_motion_kind_name(mechanism->kind)));
-  for (int k = 0; k < 2; k++) {
-    strut_shape *shape =
-        strut_add_ghost(&self->figure, panel, self->model, k ? moved : self->q, 0.72);
-    shape->style.thinness = 0.5;
-    shape->style.no_supports = k == 1;
-    if (k) shape->style.colour = strut_palette_thing(0);
-  }
+  strut_shape *shape = strut_add_ghost(&self->figure, panel, self->model, self->q, 0.72);
+  shape->style.no_supports = false;
+  shape->style.thinness = 0.5;
+  shape = strut_add_ghost(&self->figure, panel, self->model, moved, 0.72);
+  shape->style.colour = strut_palette_thing(0);
+  shape->style.thinness = 0.5;
   strut_add_displacements(&self->figure, panel, self->model, self->q, moved);
 }
 
@@ -117,19 +120,11 @@ static int32_t add_panels(picture *self) {
   const strut_rigidity *rigidity = self->rigidity;
   int32_t states = rigidity->states.force ? rigidity->states.count : 0;
   int32_t motions = rigidity->mechanisms.list ? rigidity->mechanisms.count : 0;
-  int32_t room = PANELS;
   self->bounds = strut_bounds_of(self->model, self->q);
   self->swing = SWING * strut_bounds_extent(&self->bounds);
   for (int d = 0; d < 2 && motions > 0; d++) /* there is room for motions */
     self->bounds.low[d] -= self->swing, self->bounds.high[d] += self->swing;
-  if (forces_told(self)) {
-    double limit = strut_largest(rigidity->force, self->model->scene->member_count);
-    add_forces(
-        self,
-        strut_figure_text(&self->figure, "forces, up to %s", strut_quantity_of(limit, 3, "N").text),
-        rigidity->force);
-    room--;
-  }
+  int32_t room = PANELS - add_prestress(self);
   int32_t kept = motions < room / 2 ? motions : room / 2; /* at least, if states abound */
   if (states > room - kept) states = room - kept;
   if (motions > room - states) motions = room - states;

@@ -165,7 +165,7 @@ static void add_setting(diagram *self, strut_panel *panel, const char *name, con
   strut_add_point(figure, line, (double)NAN, (double)NAN);
   strut_add_point(figure, line, row->evaluations, BEYOND);
   strut_add_point(figure, line, (double)NAN, (double)NAN);
-  panel->remark = "at the upper edge: diverged";
+  panel->note = "at the upper edge: diverged";
 }
 
 /* The step of a row on the front; with its group where another one on the front has the same. */
