@@ -37,6 +37,7 @@ static const strut_option options[] = {
     STRUT_SET_OPTION,
     {STRUT_FILLS(plot), "plot", "FILE",
      "draw the first result over the first axis, or as a map of two (.svg, .pdf, .png or .json)"},
+    {.table = strut_svg_text_options},
     {STRUT_FILLS(count_points), "count", NULL, "only print the number of points and the columns"},
     {STRUT_FILLS(plan), "plan", NULL,
      "only print which measurements would determine the parameters of a fit best"},
@@ -259,11 +260,11 @@ static strut_status show_plan(const strut_arguments *arguments, const strut_swee
 }
 
 /* --plot: the first result over the first axis, a curve for each value of the second, or as a map of both. */
-static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study) {
+static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study,
+                               const strut_plot *plot) {
   const strut_sweep_plan *plan = &study->plan;
   const strut_slot_column *columns = plan->columns;
   char path[PATH_MAX];
-  strut_plot plot;
   strut_table table = {0};
   strut_error error = {0};
   size_t axes = plan->axis_columns, result = axes;
@@ -279,11 +280,10 @@ static strut_status plot_table(const strut_arguments *arguments, const strut_swe
                                      .color = columns[result].name,
                                      .series = axes > 1 ? columns[1].name : NULL,
                                      .panels = axes > 2 ? columns[2].name : NULL};
-  strut_status status = strut_plot_read(arguments, 0, &plot);
-  if (!status) status = strut_table_read(arguments->listener, path, &table);
+  strut_status status = strut_table_read(arguments->listener, path, &table);
   if (status) return status;
   strut_sweep_show_units(plan, &table);
-  status = strut_table_draw(&plot, &figure, &table, false, &error);
+  status = strut_table_draw(plot, &figure, &table, false, &error);
   strut_arena_free(&table.arena);
   return strut_print_failure(status, &error);
 }
@@ -310,8 +310,9 @@ static strut_status run_sweep(const strut_arguments *given) {
   strut_arguments own = *given, *arguments = &own;
   char results[PATH_MAX];
   strut_sweep_study study = {0};
+  strut_plot plot;
   strut_status status = check_combination(arguments);
-  if (!status) status = strut_try_file(arguments->plot);
+  if (!status && arguments->plot) status = strut_plot_read(arguments, 0, &plot);
   if (status) return status;
   if (!arguments->output && name_results(arguments->model, results)) own.output = results;
   if (!arguments->output && !arguments->count_points && !arguments->plan)
@@ -330,7 +331,7 @@ static strut_status run_sweep(const strut_arguments *given) {
     status = compute_study(arguments, &study);
   if (arguments->plot &&
       (status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INACCURATE)) {
-    strut_status plotted = plot_table(arguments, &study);
+    strut_status plotted = plot_table(arguments, &study, &plot);
     if (plotted) status = plotted;
   }
   strut_sweep_study_close(&study);

@@ -192,8 +192,7 @@ plot("stiff.csv", "--svg-text", "--plot", "a.pdf", code=1, err="--svg-text is fo
 # Limits and labels that are given.
 plot("two.csv", "--y", "v", "--x-limits", "0,10", "--y-limits", "-0.02,0.02", "--plot", "limits.svg",
      "--x-label", "frequency of the drive", "--y-label", "speed", "--title", "Own title")
-_, _, paths = read("limits.svg")
-found = check_curve("limits.svg", xs, one, curves(paths, FIRST)[0])
+found = check_curve("limits.svg", xs, one, curves(paths := read("limits.svg")[2], FIRST)[0])
 frames = [path.lines[0] for path in paths if near(path.stroke, FRAME) and len(path.lines[0]) >= 4]
 if found and frames:
     low, high = (f(p[0] for p in frames[0]) for f in (min, max))
@@ -207,12 +206,14 @@ for words, err in ((["--x-limits", "3,1"], "two ascending numbers"),
     plot("two.csv", "--y", "v", *words, "--plot", "a.svg", code=1, err=err)
 
 # An eighth curve has the colour of the first, and other dashes.
-write("many.csv", "t," + ",".join(f"s{k}" for k in range(8)) + "\n" + "".join(
-    f"{i}," + ",".join(f"{k + math.sin(i)!r}" for k in range(8)) + "\n" for i in range(30)))
-plot("many.csv", "--y", ",".join(f"s{k}" for k in range(8)), "--plot", "many.svg")
+write("many.csv", "t," + ",".join(f"rise_n{k} [m]" for k in range(8)) + ",accuracy_kept\n" + "".join(
+    f"{i}," + ",".join(f"{k + math.sin(i)!r}" for k in range(8)) + f",{i % 9 and 1}\n" for i in range(30)))
+plot("many.csv", "--y", ",".join(f"rise_n{k}" for k in range(8)), "--plot", "many.svg")
 dashes = [path.dash for path in read("many.svg")[2] if near(path.stroke, FIRST) and not path.curved
           and any(len(line) > 4 for line in path.lines)]
 check(len(dashes) == 2 and bool(dashes[0]) != bool(dashes[1]), f"many.svg: dashes {dashes}")
+rings = sum(path.curved and not path.fill for path in read("many.svg")[2])  # where it was not kept, and in the key
+check({"rise in m", "accuracy not kept"} <= set(texts("many.svg")) and rings == 4 * 8 + 1, f"many.svg: {rings} rings")
 
 # Rounding noise is drawn as a level line.
 write("noise.csv", "t [s],y [m],c [N]\n" + "".join(

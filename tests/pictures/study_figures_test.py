@@ -14,9 +14,9 @@ from testing import check, finish, strut, work, write
 FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.25, 0.25, 0.25)
 
 
-def sweep(text, code=0):
+def sweep(text, *more, code=0):
     write("study.yaml", text)
-    done = subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet"], capture_output=True, text=True)
+    done = subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet", *more], capture_output=True, text=True)
     check(done.returncode == code, f"exit code {done.returncode}: {done.stderr}")
     return done.stderr
 
@@ -96,8 +96,7 @@ sweep(STUDY + "".join(
     f"x_label: moment, y_limits: [-{k} m, {100 * k} cm], x_limits: [0, 2]}}\n" for k in (1, 2)))
 high = [max(p[1] for p in line) - min(p[1] for p in line) for line in (curve("out/y1.svg"), curve("out/y2.svg"))]
 check(abs(high[0] / high[1] - 2) < 0.01, f"y_limits: heights {high}")
-wide = max(p[0] for p in curve("out/y1.svg")) - min(p[0] for p in curve("out/y1.svg"))
-check(0.35 < wide / 510 < 0.5, f"x_limits: a curve of {wide} pt")
+check(0.35 < math.dist(*([p[0]] for p in (curve("out/y1.svg")[0], curve("out/y1.svg")[-1]))) / 510 < 0.5, "x_limits")
 
 os.rename("out", "free")
 
@@ -143,8 +142,8 @@ figures:
   less: {x: tilt, y: velocity, series: stiffness, difference: stretch}
 """
 os.rename("out", "driven")
-sweep(UNITS)
-check(open("out/table.csv").read().startswith("point,tilt [rad],stretch [m],stiffness [N/m],velocity [m/s],"), "units: table")
+sweep(UNITS, "--svg-text")
+check("steep</text>" in open("out/named.svg").read() and open("out/table.csv").read().startswith("point,tilt [rad],stretch [m],stiffness [N/m],velocity [m/s],"), "units: table")
 for name, wanted, missing in (
         ("lines", ("tilt in deg", "velocity in mm/s", "a) stiffness = 0.1 kN/m", "b) stiffness = 3 kN/m", "25"), ("30",)),
         ("named", ("stiffness in kN/m", "a) stretch = 0.5 mm", "b) stretch = 20 mm", "level", "half, way", "steep", "status completed of at least one tilt"), ()),

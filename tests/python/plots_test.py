@@ -94,6 +94,7 @@ class Plots(unittest.TestCase):
         self.assertEqual(len(ax.figure.axes), 2)  # and the scale of colours
         with self.assertRaisesRegex(ValueError, "one or two axes"):
             CRAWLER.sweep(points=[[8, 0.1], [9, 0.2]], names=["frequency", "friction"], keep="velocity").plot()
+        self.assertEqual(strut.tradeoff(MODELS / "basics/oscillator.yaml", step_sizes=3).plot().get_lines()[0].get_label(), "rk4")
 
     def test_prefixes_are_those_of_the_programs_figures(self):
         for largest, unit, label in ((2e-3, "m", "a in mm"), (999e-6, "m", "a in µm"), (1000, "N/m", "a in kN/m"),

@@ -30,6 +30,7 @@ typedef struct maker {
   int x, y[STRUT_MOST_Y], y_count, panel;
   int by, band, low, high, stable, line, mark, thing; /* of curves */
   int value, doubt;                                   /* of maps and points */
+  int kept, broken; /* 0 where the accuracy is not kept; above 0 where a condition does not hold */
   const char *band_text;
   strut_table table;                 /* what is shown of the given one */
   strut_table_groups panels, curves; /* curves, or categories of a map */
@@ -87,6 +88,11 @@ static const char *group_text(maker *self, int column, const strut_table_groups 
       &self->page, "%s%s%s", named ? of->name : "", named ? between : "",
       unit ? strut_quantity_shown(value, DIGITS, *of->unit ? of->unit : "1", of->shown).text
            : groups->name[i]);
+}
+
+/* Has the row's point not kept the accuracy, or a condition of the search? */
+static bool is_doubted(const maker *self, size_t row) {
+  return value_of(self, self->kept, row) == 0 || value_of(self, self->broken, row) > 0;
 }
 
 static bool is_in_panel(const maker *self, size_t panel, size_t row) {
@@ -165,6 +171,8 @@ static void add_row(maker *self, strut_panel *panel, strut_series *series, int y
   strut_point *point = strut_add_point(&self->page, series, x, value_of(self, y, row));
   point->low = value_of(self, self->low, row), point->high = value_of(self, self->high, row);
   point->unstable = stable && strcmp(stable->text[row], "no") == 0;
+  if (is_doubted(self, row) && isfinite(point->x + point->y))
+    strut_add_mark(&self->page, panel, point->x, point->y, NULL)->ring = true;
   add_kind(self, panel, row, point);
 }
 
@@ -220,8 +228,21 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
   panel->zero = true;
 }
 
+/* What rings, grey dots and hatching mean; NULL: no row has them. */
+static const char *doubt_of(const maker *self) {
+  for (size_t i = 0; i < self->table.row_count; i++)
+    if (is_doubted(self, i))
+      return value_of(self, self->kept, i) == 0 ? "accuracy not kept" : "conditions not met";
+  return NULL;
+}
+
 /* Explains dashes and marks; of very many marks there are no texts. */
 static void add_keys(maker *self) {
+  const bool points = self->wanted->kind == STRUT_FIGURE_POINTS;
+  if (!is_map(self))
+    strut_add_key(&self->page, STRUT_KEY_DOT,
+                  (strut_pen){.colour = strut_grey(0.1), .width = points ? 0 : 0.9}, doubt_of(self))
+        ->fill.colour = points ? strut_grey(0.75) : strut_faded(strut_grey(1), 0);
   const strut_table_column *stable = column_of(self, self->stable);
   static const char *const words[] = {"stable", "unstable"};
   for (int k = 0; k < 2 && stable; k++) {
@@ -253,7 +274,8 @@ static void add_points(maker *self, size_t number, strut_panel *panel) {
       if (!is_in_panel(self, number, i) || (*column_of(self, self->mark)->text[i] != 0) != marked)
         continue;
       double x = value_of(self, self->x, i), y = value_of(self, self->y[0], i);
-      strut_add_point(&self->page, cloud, x, y)->value = value_of(self, self->value, i);
+      strut_add_point(&self->page, cloud, x, y)->value =
+          is_doubted(self, i) ? (double)NAN : value_of(self, self->value, i);
       if (marked) strut_add_mark(&self->page, panel, x, y, NULL)->ring = true;
     }
   }
@@ -364,7 +386,7 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
     value[k] = !cells[k]   ? (double)NAN
                : of->value ? value_of(self, self->value, row)
                            : index_of(&self->curves, of->text[row]);
-    doubtful[k] = cells[k] && doubt && is_doubtful(doubt->text[row]);
+    doubtful[k] = cells[k] && ((doubt && is_doubtful(doubt->text[row])) || is_doubted(self, row));
   }
   *map = (strut_map){.columns = self->count[0],
                      .rows = self->count[1],
@@ -373,19 +395,40 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
                      .name_count = self->curves.count,
                      .names = of->value ? NULL : self->curves.name,
                      .value = value,
-                     .doubtful = doubt ? doubtful : NULL,
-                     .doubt = doubt ? doubt->name : NULL};
+                     .doubtful = doubt || doubt_of(self) ? doubtful : NULL,
+                     .doubt = doubt ? doubt->name : doubt_of(self)};
 }
 
 /* ---- the whole ---- */
 
-/* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
+/* What the names of all y columns begin with, "x" of x_n1 and x_n2, or end with, "x" of n1.x and n2.x; "": nothing. */
+static const char *shared_word(maker *self) {
+  const char *first = column_of(self, self->y[0])->name;
+  size_t whole = strlen(first), front = whole, back = whole;
+  for (int k = 1; k < self->y_count; k++) {
+    const char *name = column_of(self, self->y[k])->name;
+    size_t length = strlen(name), same = 0;
+    while (same < front && name[same] == first[same]) same++;
+    front = same;
+    for (same = 0;
+         same < back && same < length && name[length - 1 - same] == first[whole - 1 - same];)
+      same++;
+    back = same;
+  }
+  while (front && !strchr("_. ", first[front - 1])) front--;
+  while (back && !strchr("_. ", first[whole - back])) back--;
+  return front > 1 ? strut_figure_text(&self->page, "%.*s", (int)front - 1, first)
+         : back    ? first + whole - back + 1
+                   : "";
+}
+
+/* The label of the y axis: the names of its columns, or what they share where those are too long or too many. */
 static const char *name_y_axis(maker *self) {
   const char *text = column_of(self, self->y[0])->name;
-  if (self->y_count > MOST_NAMES) return "";
-  for (int k = 1; k < self->y_count; k++)
+  for (int k = 1; k < self->y_count && k < MOST_NAMES; k++)
     text = strut_figure_text(&self->page, "%s, %s", text, column_of(self, self->y[k])->name);
-  return self->y_count > 1 && strlen(text) > NAME ? "" : text;
+  bool short_enough = self->y_count == 1 || (self->y_count <= MOST_NAMES && strlen(text) <= NAME);
+  return short_enough ? text : shared_word(self);
 }
 
 /* Numbers, in the unit of `first` unless that is NULL. */
@@ -474,6 +517,8 @@ static void find_columns(maker *self, const strut_table *table) {
   self->line = find_column(table, wanted->line, NULL);
   self->mark = find_column(table, wanted->mark, NULL);
   self->thing = find_column(table, wanted->thing, NULL);
+  self->kept = find_column(table, "accuracy_kept", NULL);
+  self->broken = find_column(table, "violation", NULL);
   self->value = find_column(table, map || points ? wanted->color : NULL, NULL);
   self->doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL);
   for (const char *y = wanted->y, *end; y && self->y_count < STRUT_MOST_Y;

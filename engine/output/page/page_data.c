@@ -261,7 +261,7 @@ static void list_parameters(strut_shown *rows, const strut_scene *scene,
     strut_show(rows, scene->parameters[i].name, scene->parameters[i].text);
   if (!run) return;
   if (experiment->accuracy > 0) { /* chooses both */
-    snprintf(text, sizeof text, "%g", experiment->accuracy);
+    snprintf(text, sizeof text, "%g %%", 100.0 * experiment->accuracy);
     strut_show(rows, "accuracy", text);
     return;
   }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/text.h"
 
 const char *strut_motion_name(strut_motion motion) {
   static const char *const names[] = {"", "periodic", "irregular", "transient", "creeping"};
@@ -76,14 +77,15 @@ bool strut_summary_is_inaccurate(const strut_summary *summary) {
 static void describe_error(const strut_summary *summary, char *text, size_t size) {
   const strut_accuracy_summary *accuracy_summary = &summary->accuracy;
   bool velocity = summary->measured_count == 0;
-  char error[60] = "the error is not known";
+  char error[80] = "the error is not known";
   char asked[60];
   snprintf(asked, sizeof asked, "%.2g %% %s", 100.0 * accuracy_summary->wanted,
            accuracy_summary->assumed ? "taken, as the model has no solver" : "requested");
   if (isfinite(accuracy_summary->expected) && velocity &&
       fabs(summary->velocity) < accuracy_summary->scale)
-    snprintf(error, sizeof error, "to within %.2g m/s",
-             accuracy_summary->expected * accuracy_summary->scale);
+    snprintf(
+        error, sizeof error, "to within %s",
+        strut_quantity_of(accuracy_summary->expected * accuracy_summary->scale, 2, "m/s").text);
   else if (isfinite(accuracy_summary->expected))
     snprintf(error, sizeof error, "to within %.2g %%", 100.0 * accuracy_summary->expected);
   if (accuracy_summary->kept && summary->steady.kind == STRUT_MOTION_CREEPING)

@@ -114,8 +114,9 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
   strut_add_key(&figures[2], STRUT_KEY_DOT, (strut_pen){.colour = strut_grey(0.1), .width = 0.6},
                 "end of the 95 % interval");
   for (int i = 0; i < 3; i++) { /* all, whatever happens to one */
-    const strut_plot plot = {.path =
-                                 strut_figure_text(&figures[i], "%s/%s.svg", directory, names[i])};
+    const strut_plot plot = {
+        .path = strut_figure_text(&figures[i], "%s/%s.svg", directory, names[i]),
+        .texts = result->plan->texts};
     strut_status drawn = strut_figure_draw(&plot, &figures[i], status ? NULL : error);
     if (!status) status = drawn;
   }

@@ -23,9 +23,11 @@ static strut_axis_choice axis_of(const char *label, const double limits[2]) {
   return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1], false};
 }
 
-static strut_plot plot_of(const strut_study_figure *figure, const char *path) {
+static strut_plot plot_of(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                          const char *path) {
   return (strut_plot){.path = path,
                       .title = figure->title,
+                      .texts = plan->texts,
                       .x = axis_of(figure->x_label, figure->x_limits),
                       .y = axis_of(figure->y_label, figure->y_limits)};
 }
@@ -36,7 +38,7 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
   strut_table motion = {0};
   strut_status status = strut_study_motion(plan, directory, figure, &motion, error);
   strut_sweep_show_units(plan, &motion);
-  const strut_plot plot = plot_of(figure, path);
+  const strut_plot plot = plot_of(plan, figure, path);
   if (!status) status = strut_table_draw(&plot, figure, &motion, false, error);
   strut_arena_free(&motion.arena);
   return status;
@@ -146,7 +148,7 @@ static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_
                                 const strut_search_result *result, strut_error *error) {
   const strut_study_search *search = plan->study->search;
   strut_table own = {0};
-  strut_plot plot = plot_of(f, path);
+  strut_plot plot = plot_of(plan, f, path);
   strut_study_figure figure = *f; /* points over two variables, the best ringed; else: */
   size_t count = table->row_count + 1;
   searched_rows rows = {.table = table,
@@ -178,7 +180,7 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
                                 const strut_search_result *searched, strut_error *error) {
   strut_arena arena = {0};
   const char *file = strut_arena_format(&arena, "%s/%s.svg", directory, figure->name);
-  const strut_plot plot = plot_of(figure, file);
+  const strut_plot plot = plot_of(plan, figure, file);
   strut_status status = STRUT_OK;
   if (!file)
     status = strut_no_memory(error, "");
@@ -280,6 +282,7 @@ strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                            .no_states = true,
                                            .interrupt = interrupt};
     const strut_plot plot = {.path = path,
+                             .texts = plan->texts,
                              .title = figure->title ? figure->title : plan->study->name};
     status = strut_compare_make(inputs, 2, &options, &result, error);
     if (!status) status = strut_compare_figure(&plot, &result, 0, result.count, error);

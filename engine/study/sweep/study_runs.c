@@ -268,7 +268,8 @@ static strut_status draw(const pictures *self, opened_run *opened, const opened_
   const strut_run_figure picture = {
       .experiment = &opened->setup.experiment,
       .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
-      .plot = {.path = file_of(self->plan, self->directory, figure, opened)},
+      .plot = {.path = file_of(self->plan, self->directory, figure, opened),
+               .texts = self->plan->texts},
       .scale = {figure->scale[0], figure->scale[1]},
       .time_count = figure->time_count,
       .times = figure->times,

@@ -65,6 +65,7 @@ typedef struct strut_sweep_plan {
   bool check, flips;       /* each point is run twice; and outcomes are compared */
   bool accurate;           /* a further column says whether the requested accuracy was reached */
   bool start;              /* a column says whether the start settled on an unstable equilibrium */
+  bool texts;              /* those of its figures are texts, not outlines */
   size_t axis_columns;     /* the first columns */
   size_t column_count, column_capacity;
   strut_slot_column *columns; /* of the axes, of what is kept, of the check */

@@ -302,12 +302,16 @@ strut_status strut_varied_scenes_derive(const strut_arguments *arguments,
 
 /* ---- figures ---- */
 
+const strut_option strut_svg_text_options[] = {
+    {STRUT_FILLS(svg_text), "svg-text", NULL, "texts of an SVG can be edited, rather than outlines",
+     .of_figure = true},
+    {.name = NULL}};
+
 const strut_option strut_width_options[] = {
     {STRUT_FILLS(width), "width", "WIDTH",
      "width of the figure: page (180 mm, default), column (88 mm) or a length", .of_figure = true,
      .words = "page|column"},
-    {STRUT_FILLS(svg_text), "svg-text", NULL, "texts of an SVG can be edited, rather than outlines",
-     .of_figure = true},
+    {.table = strut_svg_text_options},
     {.name = NULL}};
 
 const strut_option strut_plot_setting_options[] = {

@@ -80,8 +80,8 @@ const char *strut_unit_of(strut_dimension dimension);
 /* ---- figures ---- */
 
 /** Tables of options: width; this and the title; what a figure of a run shows; labels and limits of one pair of axes. */
-extern const strut_option strut_width_options[], strut_plot_setting_options[],
-    strut_run_figure_options[], strut_axis_options[];
+extern const strut_option strut_svg_text_options[], strut_width_options[],
+    strut_plot_setting_options[], strut_run_figure_options[], strut_axis_options[];
 
 /**
  * Reads all but the file into a plot. `usual` is the default width [pt]; 0: a page's. STRUT_USAGE; the

@@ -341,7 +341,8 @@ static strut_status draw_branches(const strut_study_job *job, strut_error *error
   const char *directory = job->arguments->output;
   strut_table table = {0};
   const char *from = strut_arena_format(&plan->arena, "%s/%s", directory, branches_name);
-  const strut_plot plot = {.path = strut_arena_format(&plan->arena, "%s/branches.svg", directory)};
+  const strut_plot plot = {.path = strut_arena_format(&plan->arena, "%s/branches.svg", directory),
+                           .texts = plan->texts};
   if (!from || !plot.path) return strut_no_memory(error, "");
   strut_status status = strut_table_read(job->arguments->listener, from, &table);
   if (!status) {

@@ -265,16 +265,16 @@ strut_status strut_sweep_sensitivity_complete(const strut_study_job *job) {
   strut_error error = {0};
   bool drawn;
   if (!plan->study->sensitivity.wanted) return STRUT_OK;
-  const char *path = strut_arena_format(&arena, "%s/sensitivity.svg", directory);
+  const strut_plot plot = {.path = strut_arena_format(&arena, "%s/sensitivity.svg", directory),
+                           .texts = plan->texts};
   const char *from = strut_arena_format(&arena, "%s/sensitivity.csv", directory);
-  strut_status status = path && from ? STRUT_OK : strut_no_memory(&error, "");
+  strut_status status = plot.path && from ? STRUT_OK : strut_no_memory(&error, "");
   if (!status) status = strut_sensitivity_find(plan->study, slots, &result, &error);
   if (!status) status = strut_sensitivity_write(&result, directory, &error);
   if (!status) status = strut_table_read(arguments->listener, from, &table);
   if (!status) {
     strut_sweep_show_units(plan, &table);
-    status =
-        strut_sensitivity_figure(&(strut_plot){.path = path}, plan->study, &table, &drawn, &error);
+    status = strut_sensitivity_figure(&plot, plan->study, &table, &drawn, &error);
   }
   strut_tell_failure(arguments->listener, status, &error);
   if (!status && !arguments->json)

@@ -203,6 +203,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status) {
     status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
     if (status && study->plan.fault.key) status = place_fault(study, error);
+    study->plan.texts = arguments->svg_text;
   }
   if (!status && file->study.search) status = bind_search(study, error);
   if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);

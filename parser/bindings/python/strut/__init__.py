@@ -15,15 +15,15 @@ from ._results import Equilibria, Equilibrium, Form, Matrices, Modes, Path, Resu
 from ._scene import Scene, load, loads, run
 from ._simulation import Motion, Simulation
 from ._strut import models, version as __version__
-from ._studies import Comparison, Fit, Study, compare, fit, sweep, tradeoff
+from ._studies import Comparison, Fit, Study, Tradeoff, compare, fit, sweep, tradeoff
 from ._sweep import Table
 from ._values import Frozen as _Frozen, Named, Words, hinted as _hinted, unknown as _unknown
 
 __all__ = [  # fmt: skip
     "Comparison", "Equilibria", "Equilibrium", "Error", "FileError", "Fit", "Form", "Matrices", "MemoryError", "Message",
     "MissingFileError", "Modes", "Motion", "Named", "Path", "Result", "Rigidity", "Run", "RunError", "Scene",
-    "SceneError", "Simulation", "Study", "Table", "UsageError", "Words", "compare", "fit", "load", "loads", "models",
-    "run", "sweep", "tradeoff",
+    "SceneError", "Simulation", "Study", "Table", "Tradeoff", "UsageError", "Words", "compare", "fit", "load", "loads",
+    "models", "run", "sweep", "tradeoff",
 ]
 
 #: commands of the program that are no functions here, and what does it

@@ -205,6 +205,18 @@ def bars(result: Result, value: str, ax: Any) -> Any:
     return ax
 
 
+def tradeoff(result: Result, ax: Any) -> Any:
+    """Median step errors of the unchanged model over costs, both relative: a line for each method."""
+    ax = axes(ax)
+    own = [s for s in result.settings if s["model"] == result.models[0]["name"] and s["step_error"]["median"]]
+    for group in dict.fromkeys(s["group"] for s in own):
+        points = [(s["evaluations"], s["step_error"]["median"]) for s in own if s["group"] == group]
+        ax.plot(*zip(*sorted(points)), "o-", markersize=3, label=group)
+    ax.set(xscale="log", yscale="log", xlabel="force evaluations, base setting = 1", ylabel="step error")
+    ax.legend()
+    return ax
+
+
 # ---- notebooks ----
 
 _MOST_ROWS = 12  # of a list
