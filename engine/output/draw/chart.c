@@ -302,10 +302,12 @@ static void draw_point(const chart *self, const line *l, size_t k) {
     strut_draw_marker(self->canvas, l->look, at[0], at[1], MARKER);
     return;
   }
-  strut_fill fill = {.colour = scale->name ? strut_grey(0.75) : l->pen.colour};
-  if (scale->name && isfinite(p->value))
+  bool empty = scale->name && !isfinite(p->value);
+  strut_fill fill = {.colour = l->pen.colour};
+  if (scale->name && !empty)
     fill.colour = strut_palette_at(scale->colours, p->value, scale->low, scale->high);
-  strut_draw_circle(self->canvas, at[0], at[1], CLOUD, &fill, NULL);
+  strut_draw_circle(self->canvas, at[0], at[1], CLOUD, empty ? NULL : &fill,
+                    empty ? &(strut_pen){.colour = strut_grey(0.45), .width = 0.7} : NULL);
 }
 
 /* Whole points, on the frame too. */

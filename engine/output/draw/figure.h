@@ -40,7 +40,7 @@ typedef struct strut_key_item {
 typedef struct strut_point {
   double x, y;      /* what is not finite breaks the line */
   double low, high; /* a whisker along y; NAN: none */
-  double value;     /* a dot's colour on the panel's scale; NAN: grey */
+  double value;     /* a dot's colour on the panel's scale; NAN: it is empty */
   bool unstable;    /* the line from here on is dashed and thinner */
 } strut_point;
 

@@ -228,7 +228,7 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
   panel->zero = true;
 }
 
-/* What rings, grey dots and hatching mean; NULL: no row has them. */
+/* What rings, empty dots and hatching mean; NULL: no row has them. */
 static const char *doubt_of(const maker *self) {
   for (size_t i = 0; i < self->table.row_count; i++)
     if (is_doubted(self, i))
@@ -239,10 +239,8 @@ static const char *doubt_of(const maker *self) {
 /* Explains dashes and marks; of very many marks there are no texts. */
 static void add_keys(maker *self) {
   const bool points = self->wanted->kind == STRUT_FIGURE_POINTS;
-  if (!is_map(self))
-    strut_add_key(&self->page, STRUT_KEY_DOT,
-                  (strut_pen){.colour = strut_grey(0.1), .width = points ? 0 : 0.9}, doubt_of(self))
-        ->fill.colour = points ? strut_grey(0.75) : strut_faded(strut_grey(1), 0);
+  const strut_pen ring = {strut_grey(points ? 0.45 : 0.1), points ? 0.7 : 0.9, {0}, false};
+  if (!is_map(self)) strut_add_key(&self->page, STRUT_KEY_DOT, ring, doubt_of(self));
   const strut_table_column *stable = column_of(self, self->stable);
   static const char *const words[] = {"stable", "unstable"};
   for (int k = 0; k < 2 && stable; k++) {
@@ -518,7 +516,8 @@ static void find_columns(maker *self, const strut_table *table) {
   self->mark = find_column(table, wanted->mark, NULL);
   self->thing = find_column(table, wanted->thing, NULL);
   self->kept = find_column(table, "accuracy_kept", NULL);
-  self->broken = find_column(table, "violation", NULL);
+  if (wanted->kind == STRUT_FIGURE_BEST) self->kept = STRUT_NO_COLUMN; /* of others than the best */
+  self->broken = find_column(table, wanted->kind == STRUT_FIGURE_BEST ? NULL : "violation", NULL);
   self->value = find_column(table, map || points ? wanted->color : NULL, NULL);
   self->doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL);
   for (const char *y = wanted->y, *end; y && self->y_count < STRUT_MOST_Y;
