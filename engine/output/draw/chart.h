@@ -48,8 +48,6 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
  * axis, 0 to 1 where nothing was included; widened by `room` of its width on either side.
  */
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
-/** Replaces name, range and kind of an axis where `choice` has one. */
-STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
 
 /* Outliers: few values that would take most of a scale lie beyond it, marked and counted. */
 

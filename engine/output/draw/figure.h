@@ -263,8 +263,6 @@ typedef enum strut_picture_format {
 STRUT_API strut_picture_format strut_picture_format_of(const char *path);
 /** STRUT_OK if a figure can be written into a file of that name, else STRUT_USAGE with the endings there are. */
 STRUT_API strut_status strut_figure_check_name(const char *path, strut_error *error);
-/** The data as JSON text, released by the caller; NULL: no memory. */
-STRUT_API char *strut_figure_json(const strut_plot *plot, const strut_figure *figure);
 
 /* The painter of figures as the rest of strut calls it: with Cairo and Pango in a module (engine/base/library.h). */
 

@@ -165,73 +165,6 @@ double strut_largest(const double *values, size_t count) {
   return most;
 }
 
-/* ---- files ---- */
-
-strut_picture_format strut_picture_format_of(const char *path) {
-  static const char *const endings[] = {".svg", ".pdf", ".png", ".json"};
-  const char *dot = strrchr(path, '.');
-  bool name = dot && !strchr(dot, '/') && dot != path && dot[-1] != '/';
-  for (int i = 0; i < STRUT_PICTURE_PIXELS && name; i++)
-    if (strcmp(dot, endings[i]) == 0) return (strut_picture_format)i;
-  return STRUT_PICTURE_PIXELS;
-}
-
-strut_status strut_figure_check_name(const char *path, strut_error *error) {
-  if (strut_picture_format_of(path) != STRUT_PICTURE_PIXELS) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE,
-                    "unknown picture format '%s': the name must end with .svg, .pdf or .png, or "
-                    ".json for its data",
-                    path);
-}
-
-static strut_status write_json(const strut_plot *plot, const strut_figure *figure,
-                               strut_error *error) {
-  char *text = strut_figure_json(plot, figure);
-  strut_status status = text ? strut_file_write_path(plot->path, text, error)
-                             : strut_no_memory(error, "while drawing");
-  strut_release(text);
-  return status;
-}
-
-/* Arrows of the ground's forces have one scale, unless it is given. */
-static void settle_arrows(strut_figure *figure) {
-  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
-  double largest = 0;
-  for (int pass = 0; pass < 2; pass++)
-    for (strut_panel *panel = figure->panels; panel < figure->panels + figure->panel_count; panel++)
-      for (strut_shape *s = panel->shapes; s < panel->shapes + panel->shape_count; s++) {
-        if (!s->forces || s->force_limit > 0) continue;
-        if (pass)
-          s->force_limit = largest;
-        else
-          largest =
-              fmax(largest, strut_largest(s->forces[0], 2 * (size_t)s->model->contacts.count));
-      }
-  if (largest > 0)
-    strut_add_key(figure, STRUT_KEY_ARROW, pen,
-                  strut_figure_text(figure, "contact force, up to %s",
-                                    strut_quantity_of(largest, 3, "N").text));
-}
-
-strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
-  const strut_cairo_library *cairo = NULL;
-  strut_c_locale locale = strut_c_locale_enter();
-  strut_status status = strut_figure_check_name(plot->path, error);
-  for (size_t i = 0; i < figure->panel_count; i++) {
-    strut_axis_choose(&figure->panels[i].x, &plot->x);
-    strut_axis_choose(&figure->panels[i].y, &plot->y);
-  }
-  settle_arrows(figure);
-  if (!status && figure->failed) status = strut_no_memory(error, "while drawing");
-  if (!status && strut_picture_format_of(plot->path) == STRUT_PICTURE_JSON)
-    status = write_json(plot, figure, error);
-  else if (!status && !(status = strut_cairo_load(&cairo, error)))
-    status = cairo->draw(plot, figure, error);
-  strut_arena_free(&figure->arena);
-  strut_c_locale_leave(locale);
-  return status;
-}
-
 /* A figure's data as JSON: for programs that draw it in their own way. */
 
 #define AXIS(X)                                                                                    \
@@ -365,8 +298,77 @@ STRUT_VALUES_HERE(key_values, KEY, const strut_key_item *k = of->at)
   X("key", "", IF(f->keys, LIST(f->keys, f->key_count)), "", .rows = &key_values)
 STRUT_VALUES_HERE(figure_values, FIGURE, const strut_figure *f = of->at)
 
-char *strut_figure_json(const strut_plot *plot, const strut_figure *figure) {
+/* ---- files ---- */
+
+strut_picture_format strut_picture_format_of(const char *path) {
+  static const char *const endings[] = {".svg", ".pdf", ".png", ".json"};
+  const char *dot = strrchr(path, '.');
+  bool name = dot && !strchr(dot, '/') && dot != path && dot[-1] != '/';
+  for (int i = 0; i < STRUT_PICTURE_PIXELS && name; i++)
+    if (strcmp(dot, endings[i]) == 0) return (strut_picture_format)i;
+  return STRUT_PICTURE_PIXELS;
+}
+
+strut_status strut_figure_check_name(const char *path, strut_error *error) {
+  if (strut_picture_format_of(path) != STRUT_PICTURE_PIXELS) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE,
+                    "unknown picture format '%s': the name must end with .svg, .pdf or .png, or "
+                    ".json for its data",
+                    path);
+}
+
+static strut_status write_json(const strut_plot *plot, const strut_figure *figure,
+                               strut_error *error) {
   strut_figure own = *figure;
   if (plot->title) own.title = plot->title;
-  return strut_values_json(&figure_values, &own, NULL);
+  char *text = strut_values_json(&figure_values, &own, NULL);
+  strut_status status = text ? strut_file_write_path(plot->path, text, error)
+                             : strut_no_memory(error, "while drawing");
+  strut_release(text);
+  return status;
+}
+
+static void choose_axis(strut_axis *axis, const strut_axis_choice *choice) {
+  if (choice->label) axis->name = choice->label;
+  if (choice->limited) axis->low = choice->low, axis->high = choice->high;
+  axis->logarithmic = axis->logarithmic || choice->logarithmic;
+}
+
+/* Arrows of the ground's forces have one scale, unless it is given. */
+static void settle_arrows(strut_figure *figure) {
+  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
+  double largest = 0;
+  for (int pass = 0; pass < 2; pass++)
+    for (strut_panel *panel = figure->panels; panel < figure->panels + figure->panel_count; panel++)
+      for (strut_shape *s = panel->shapes; s < panel->shapes + panel->shape_count; s++) {
+        if (!s->forces || s->force_limit > 0) continue;
+        if (pass)
+          s->force_limit = largest;
+        else
+          largest =
+              fmax(largest, strut_largest(s->forces[0], 2 * (size_t)s->model->contacts.count));
+      }
+  if (largest > 0)
+    strut_add_key(figure, STRUT_KEY_ARROW, pen,
+                  strut_figure_text(figure, "contact force, up to %s",
+                                    strut_quantity_of(largest, 3, "N").text));
+}
+
+strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
+  const strut_cairo_library *cairo = NULL;
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_status status = strut_figure_check_name(plot->path, error);
+  for (size_t i = 0; i < figure->panel_count; i++) {
+    choose_axis(&figure->panels[i].x, &plot->x);
+    choose_axis(&figure->panels[i].y, &plot->y);
+  }
+  settle_arrows(figure);
+  if (!status && figure->failed) status = strut_no_memory(error, "while drawing");
+  if (!status && strut_picture_format_of(plot->path) == STRUT_PICTURE_JSON)
+    status = write_json(plot, figure, error);
+  else if (!status && !(status = strut_cairo_load(&cairo, error)))
+    status = cairo->draw(plot, figure, error);
+  strut_arena_free(&figure->arena);
+  strut_c_locale_leave(locale);
+  return status;
 }

@@ -142,12 +142,6 @@ void strut_axis_settle(strut_axis *axis, double room) {
   axis->high += room * span;
 }
 
-void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
-  if (choice->label) axis->name = choice->label;
-  if (choice->limited) axis->low = choice->low, axis->high = choice->high;
-  axis->logarithmic = axis->logarithmic || choice->logarithmic;
-}
-
 /* ---- ranges that few values do not flatten ---- */
 
 /* Values that take more than this part of a scale are left out of it, if they are few. */

@@ -50,7 +50,7 @@ typedef struct block {
   const strut_run_scene *run;
   kind of;
   const strut_channel_row *row; /* NULL: derived */
-  const char *name, *unit;
+  const char *name;
   const double *values; /* (frames, columns) */
   size_t columns, stride, count, first;
   double least; /* smaller ranges are rounding */
@@ -100,32 +100,39 @@ static double derive(const block *self, size_t item, size_t f) {
          strut_member_path_length(run->model, member, strut_run_positions(run, self->first));
 }
 
+/* Fills in what is derived from the motion. */
+static void derive_all(block *self) {
+  const strut_run_scene *run = self->run;
+  bool ground = run->model->scene->ground.present;
+  if (self->of == DISPLACEMENT) self->count = ground ? 1 : 2;
+  if (self->of == HEIGHTS && ground) self->count = run->motion->contact_count;
+  if (self->of == DRIVE) choose_driven(self);
+  double *values = strut_figure_numbers(run->page, NULL, run->frames * self->count);
+  self->columns = self->count;
+  if (!values) self->count = 0;
+  for (size_t k = 0; k < run->frames * self->count; k++)
+    values[k] = derive(self, k % self->count, k / self->count);
+  self->values = values;
+}
+
 /* The values of a kind that begins at frame `first`; a count of 0 where there are none. */
 static block find_block(const strut_run_scene *run, kind of, size_t first) {
-  block b = {.run = run, .of = of, .first = first, .stride = 1, .unit = "m"};
-  if (of >= KINDS)
+  block b = {.run = run, .of = of, .first = first, .stride = 1};
+  if (of >= KINDS) {
     b.row = strut_channel_at((size_t)of - KINDS);
-  else if (kinds[of].channel)
-    b.row = strut_channel_named(kinds[of].channel);
-  b.name = of < KINDS ? kinds[of].name : b.row->name;
-  b.change = of < KINDS && kinds[of].change;
-  if (of < KINDS) b.least = of == ANGLES ? STANDING : kinds[of].least * run->model->size;
+    b.name = b.row->name;
+  } else {
+    if (kinds[of].channel) b.row = strut_channel_named(kinds[of].channel);
+    b.name = kinds[of].name, b.change = kinds[of].change;
+    b.least = of == ANGLES ? STANDING : kinds[of].least * run->model->size;
+  }
   if (b.row) {
-    b.unit = b.row->unit;
     b.values = strut_trajectory_channel(run->motion, b.row->id);
     b.columns = b.row->components * strut_channel_items(b.row, run->model->scene);
     b.stride = of < ENERGIES ? b.row->components : 1;
     b.count = !b.values ? 0 : of == ENERGIES ? STORED : b.columns / b.stride;
   } else {
-    if (of == DISPLACEMENT) b.count = run->model->scene->ground.present ? 1 : 2;
-    if (of == HEIGHTS && run->model->scene->ground.present) b.count = run->motion->contact_count;
-    if (of == DRIVE) choose_driven(&b);
-    b.columns = b.count;
-    double *values = strut_figure_numbers(run->page, NULL, run->frames * b.count);
-    for (size_t k = 0; values && k < run->frames * b.count; k++)
-      values[k] = derive(&b, k % b.count, k / b.count);
-    b.values = values;
-    if (!values) b.count = 0;
+    derive_all(&b);
   }
   for (size_t i = 0; i < b.count && of == ENERGIES; i++)
     b.least = fmax(b.least, ROUNDING * fabs(value_at(&b, i, 0)));
@@ -234,7 +241,7 @@ static void add_panel(strut_run_scene *run, kind of, size_t first, double height
                           .unit = "s",
                           .low = run->motion->time[first],
                           .high = run->motion->time[last]};
-  panel->y = strut_axis_of(one ? "x displacement" : b.name, b.unit);
+  panel->y = strut_axis_of(one ? "x displacement" : b.name, b.row ? b.row->unit : "m");
   panel->height = height;
   panel->zero = of == NORMALS;
   panel->least = fmax(b.least, b.change ? 0 : LEVEL * most);

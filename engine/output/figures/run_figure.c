@@ -16,15 +16,11 @@ static const double BURST = 10.0; /* a diverged shape larger than this, in sizes
 static const double FEW_FRAMES = 0.05;
 static const double SMALLEST = 0.2; /* of the model's size, for a drawing */
 
-static const struct {
-  const char *(*fill)(strut_run_scene *run, strut_figure *figure);
-  bool velocity; /* its heading tells the velocity */
-} views[] = {
-    [STRUT_RUN_OVERVIEW] = {strut_run_overview, true},
-    [STRUT_RUN_PERIOD] = {strut_run_period, true},
-    [STRUT_RUN_SNAPSHOTS] = {strut_run_snapshots, false},
-    [STRUT_RUN_CURVES] = {strut_run_curves, true},
-};
+static const char *(*const views[])(strut_run_scene *run, strut_figure *figure) = {
+    [STRUT_RUN_OVERVIEW] = strut_run_overview,
+    [STRUT_RUN_PERIOD] = strut_run_period,
+    [STRUT_RUN_SNAPSHOTS] = strut_run_snapshots,
+    [STRUT_RUN_CURVES] = strut_run_curves};
 
 strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_scene *scene,
                                     strut_error *error) {
@@ -196,7 +192,8 @@ static const char *describe_run(const strut_run_scene *run, const char *what) {
     return strut_figure_text(run->page, "%s at %s; %.400s",
                              summary->status == STRUT_DIVERGED ? "diverged" : "stopped",
                              strut_quantity_of(summary->duration, 4, "s").text, what);
-  if (!views[run->figure->view].velocity || !summary || !isfinite(summary->velocity)) return what;
+  bool moving = summary && run->figure->view != STRUT_RUN_SNAPSHOTS;
+  if (!moving || !isfinite(summary->velocity)) return what;
   double way = fabs(summary->velocity) * fmax(summary->duration, STRUT_RUN_MOMENT);
   double v = way > STANDING * run->model->size ? summary->velocity : 0;
   return strut_figure_text(run->page, "%.400s; velocity of %.60s %s%s", what,
@@ -217,6 +214,6 @@ strut_status strut_run_figure_draw(const strut_run_figure *figure, const strut_m
   if (!run.frames)
     return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
   strut_run_find_limits(&run);
-  page.note = describe_run(&run, views[figure->view].fill(&run, &page));
+  page.note = describe_run(&run, views[figure->view](&run, &page));
   return strut_figure_draw(&figure->plot, &page, error);
 }
