@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
 
@@ -13,6 +14,8 @@ static const double LEAST_NOISE = 3e-17, MOST_NOISE = 1e-6, USUAL_NOISE = 1e-11;
 static const double PART = 0.125, LEAST_PART = 1.0 / 128.0, SPREAD = 0.3;
 /* In parts of the change: a bend to be looked at, and that of what seems straight. */
 static const double BENT = 0.1, SLIGHT = 0.01, GOLDEN = 0.6180339887498949;
+/* Deviation of a second difference of noise, in those of a half of a first one. */
+static const double OF_BEND = 3.4641016151377544;
 
 /* Two points along a direction: `central` at 1 and -1, else at 1 and 2 steps. */
 typedef struct pair {
@@ -133,6 +136,30 @@ static double slope(const differences *self, const pair *along, size_t j, double
   return along->central ? (first - second) / 2.0 : (4.0 * (first - here) - (second - here)) / 2.0;
 }
 
+/* Does a pair change no output from `j` to before `end` by a bit? */
+static bool is_idle(const differences *self, size_t i, size_t j, size_t end) {
+  const pair *along = &self->pairs[i];
+  size_t bytes = (end - j) * sizeof *self->outputs;
+  return memcmp(along->values[0] + j, self->outputs + j, bytes) == 0 &&
+         memcmp(along->values[1] + j, self->outputs + j, bytes) == 0;
+}
+
+/* The size of a jump: what an output changes by to one side, while it stays as it is on the other; else 0. */
+static double jump_of(const differences *self, const pair *along, size_t j) {
+  double here = self->outputs[j], first = along->values[0][j], second = along->values[1][j];
+  double one = fabs(first - here), other = fabs(second - (along->central ? here : first));
+  double size = fmax(one, other);
+  bool sharp = fmin(one, other) <= BENT * size && size > MOST_NOISE * fabs(here);
+  return sharp && size > 32.0 * noise_of(self, j) ? size : 0.0;
+}
+
+/* Does an output jump at the point? Smaller steps, which are those along all parameters, make a jump no smaller. */
+static bool is_jump(const differences *self, size_t i, size_t j) {
+  double size = jump_of(self, &self->pairs[i], j);
+  double again = jump_of(self, &self->pairs[self->task->parameter_count], j);
+  return size > 0.0 && fabs(again - size) <= BENT * size;
+}
+
 /* How much an output bends along a parameter: the more, the more its differences are likely to be wrong. */
 static double bend_of(const differences *self, size_t i, size_t j) {
   double bend, change = slope(self, &self->pairs[i], j, &bend);
@@ -176,7 +203,10 @@ static void conclude(const differences *self, size_t j, strut_derivative *to) {
     off -= part * slope(self, &self->pairs[i], j, &bend);
     roots += part * sqrt(fabs(bend)), bends += part * fabs(bend);
   }
-  off = fabs(off) + 2.0 * DBL_EPSILON * fabs(self->outputs[j]);
+  double rounding = 2.0 * DBL_EPSILON * fabs(self->outputs[j]);
+  double uneven = fmax(fabs(together) - roots * roots, 0.0); /* by noise, or by mixed curvature */
+  if (isfinite(self->errors[j])) uneven = fmin(uneven, 4.0 * own);
+  off = hypot(off, uneven / OF_BEND) + rounding;
   double most = fmax(fmin(2.0 * roots * roots, bends / 2.0), 8.0 * noise);
   for (size_t i = 0; i < n; i++) {
     double h = self->pairs[i].step[i], change = slope(self, &self->pairs[i], j, &bend);
@@ -189,11 +219,13 @@ static void conclude(const differences *self, size_t j, strut_derivative *to) {
     to[i].error = error + own / scale_of(&self->task->parameters[i]);
     to[i].verdict = STRUT_DERIVATIVE_THERE;
     if (bent && lasts && fabs(bend) > 32.0 * noise) to[i].verdict = STRUT_DERIVATIVE_NONE;
+    if (is_jump(self, i, j)) to[i].verdict = STRUT_DERIVATIVE_NONE;
     if (!isfinite(to[i].value + to[i].error)) to[i].verdict = STRUT_DERIVATIVE_UNKNOWN;
     if (to[i].verdict != STRUT_DERIVATIVE_THERE) to[i].value = to[i].error = (double)NAN;
-    const pair *along = &self->pairs[i];
-    if (along->values[0][j] == self->outputs[j] && along->values[1][j] == self->outputs[j])
-      to[i] = (strut_derivative){0.0, 0.0, STRUT_DERIVATIVE_THERE}; /* it does not depend on it */
+    if (!is_idle(self, i, j, j + 1) || isnan(self->outputs[j])) continue;
+    bool exact = self->errors[j] == 0.0 ||
+                 (is_idle(self, i, 0, self->task->output_count) && rounding < MOST_NOISE * fabs(h));
+    to[i] = (strut_derivative){0.0, exact ? 0.0 : rounding / fabs(h), STRUT_DERIVATIVE_THERE};
   }
 }
 

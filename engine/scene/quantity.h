@@ -10,6 +10,7 @@
 #pragma once
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "engine/scene/observables.h"
@@ -93,6 +94,11 @@ typedef struct strut_quantity_definition {
   double target;             /* of ARRIVAL, in the expression's SI unit */
   const char *target_unit;   /* of ARRIVAL: that unit; "1": none */
 } strut_quantity_definition;
+
+/** Is its value an integral over the window? */
+static inline bool strut_takes_mean(const strut_quantity_definition *quantity) {
+  return quantity->take == STRUT_TAKE_MEAN || quantity->take == STRUT_TAKE_RMS;
+}
 
 /**
  * Error allowed for a value of a quantity, in its unit, where `accuracy` is that of the run. Relative ones refer to

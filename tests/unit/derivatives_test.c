@@ -6,10 +6,10 @@
 #include "engine/base/derivatives.h"
 #include "tests/support/test.h"
 
-enum { COUNT = 3, OUTPUTS = 6 };
+enum { COUNT = 3, OUTPUTS = 9 };
 static atomic_int calls;
 
-/* What is asked: smooth; an extremum in all; small noise; a kink; a kink that only together differs; missing below. */
+/* Smooth; an extremum in all; small noise; two kinks; missing below; a jump; a change that rounding hides; a count. */
 static strut_status functions(void *context, const double *p, double *y, double *errors,
                               strut_error *error) {
   (void)context, (void)error;
@@ -22,6 +22,9 @@ static strut_status functions(void *context, const double *p, double *y, double 
   y[3] = fmax(x - 1.0, 0.0) + u;
   y[4] = fabs((x - 1.0) - (u - 2.0)) + w;
   y[5] = sqrt(w - 3.0);
+  y[6] = x > 1.0 ? 7.0 : 5.0;
+  y[7] = 1e12 + x;
+  y[8] = 3.0, errors[8] = 0.0;
   return STRUT_OK;
 }
 
@@ -78,6 +81,16 @@ TEST(kinks) {
   expect(d[4][2], 1.0, 1.0);
   assert_int_equal(d[5][2].verdict, STRUT_DERIVATIVE_UNKNOWN);
   assert_string_equal(strut_derivative_words(d[3][0].verdict), "not differentiable here");
+}
+
+/* A jump is not smooth at any step; what rounding hides has its error; a count is exact. */
+TEST(jumps_and_what_rounding_hides) {
+  strut_derivative d[OUTPUTS][COUNT];
+  find(usual, 1, d);
+  assert_int_equal(d[6][0].verdict, STRUT_DERIVATIVE_NONE);
+  expect(d[6][1], 0.0, 1e-6);
+  expect(d[7][0], 1.0, 1e3);
+  assert_true(d[8][0].value == 0.0 && d[8][0].error == 0.0);
 }
 
 TEST(any_number_of_threads) {

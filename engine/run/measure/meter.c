@@ -355,7 +355,8 @@ static bool is_near_extreme(const strut_meter *meter, double value, double bend,
 
 bool strut_meter_is_even(const strut_meter *meter, double value, double length) {
   if (!meter->inner) return true;
-  if (!(meter->elapsed > 0.0) || meter->elapsed > 2.0 * length || length > 2.0 * meter->elapsed)
+  if (meter->exact || !(meter->elapsed > 0.0) || meter->elapsed > 2.0 * length ||
+      length > 2.0 * meter->elapsed)
     return false;
   double difference = second_difference(meter->before, meter->elapsed, meter->value, value, length);
   double bend = fabs(difference), low = fmin(meter->value, value), high = fmax(meter->value, value);
@@ -435,7 +436,7 @@ bool strut_meter_is_resolved(const strut_meter *meter, const strut_samples *samp
     if (is_unresolved(meter, samples, k, &least, &most) && may_exceed(meter, least, most))
       return false;
   }
-  double part = last > 2 ? RESOLVED : EVEN;
+  double part = meter->exact ? EXACT : last > 2 ? RESOLVED : EVEN;
   return !(worst > part * fmax(range_of(meter), high - low) + ROUNDED * meter->largest);
 }
 

@@ -222,7 +222,8 @@ static bool needs_inner(const strut_meter *meter) {
 }
 
 static bool make_meter(strut_quantities *quantities, const strut_quantity_definition *definition,
-                       double accuracy, strut_arena *arena, strut_meter *meter) {
+                       const strut_experiment *experiment, strut_arena *arena, strut_meter *meter) {
+  double accuracy = experiment->accuracy;
   strut_column primitive;
   *meter = (strut_meter){.definition = definition, .rate_of = NONE};
   meter->index = strut_arena_allocate(arena, definition->length, sizeof *meter->index);
@@ -234,6 +235,7 @@ static bool make_meter(strut_quantities *quantities, const strut_quantity_defini
   if (mean && find_primitive(definition->program[0].column, &primitive))
     meter->rate_of = strut_columns_add(&quantities->columns, primitive);
   meter->inner = needs_inner(meter);
+  meter->exact = experiment->exact_means && meter->inner && strut_takes_mean(definition);
   meter->accuracy = accuracy > 0.0 ? accuracy : USUAL_ACCURACY;
   quantities->inner = quantities->inner || meter->inner;
   return true;
@@ -266,7 +268,7 @@ strut_quantities *strut_quantities_create(const strut_model *model,
                strut_columns_create(model, columns, arena, &quantities->columns) &&
                strut_dense_create(model, arena, &quantities->dense);
   for (size_t i = 0; i < quantities->count && ready; i++)
-    ready = make_meter(quantities, &experiment->quantities[i], experiment->accuracy, arena,
+    ready = make_meter(quantities, &experiment->quantities[i], experiment, arena,
                        &quantities->meters[i]);
   return ready ? quantities : NULL;
 }

@@ -163,7 +163,7 @@ static double goal_along(const strut_sweep_plan *plan, const double *numbers, si
   for (size_t j = 0; j < plan->derived_count; j++) {
     size_t at = strut_slot_place(plan->columns, plan->first_derivative) +
                 2 * (j * plan->by_count + variable);
-    moved[strut_slot_place(plan->columns, plan->derived[j])] += way * numbers[at];
+    moved[strut_slot_place(plan->columns, plan->derived[j].column)] += way * numbers[at];
   }
   return evaluate(&search->goal, moved);
 }

@@ -54,6 +54,12 @@ typedef struct strut_study_fault {
   const char *key, *name;
 } strut_study_fault;
 
+/** A column that is differentiated. */
+typedef struct strut_derived_column {
+  size_t column;
+  bool stepped; /* a count or a setting: differences of it are exact */
+} strut_derived_column;
+
 /** Columns and points of a study's table. Constant once made. */
 typedef struct strut_sweep_plan {
   const strut_study *study;
@@ -77,8 +83,8 @@ typedef struct strut_sweep_plan {
   size_t by_count, derived_count, first_derivative; /* column of the first derivative, if any */
   strut_derived_by *by; /* (by_count) parameters that the derived numbers are differentiated by */
   size_t own_by_count;  /* the first of them, at all points; the others at the medians */
-  size_t *derived;      /* (derived_count) columns that are differentiated */
-  bool *names_member;   /* (quantity_count) a word beside it: the member of the largest force */
+  strut_derived_column *derived; /* (derived_count) that are differentiated */
+  bool *names_member;      /* (quantity_count) a word beside it: the member of the largest force */
   strut_study_fault fault; /* why it could not be made */
 } strut_sweep_plan;
 

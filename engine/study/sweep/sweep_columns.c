@@ -31,7 +31,7 @@ static bool make_room(strut_sweep_plan *plan) {
   const size_t count = plan->column_count, more = 2 * count + 32;
   if (count < plan->column_capacity) return true;
   const strut_slot_column *columns = plan->columns;
-  const size_t *derived = plan->derived;
+  const strut_derived_column *derived = plan->derived;
   if (!STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->columns, more), STRUT_NEW(plan->derived, more)))
     return false;
   if (count) memcpy(plan->columns, columns, count * sizeof *columns);
@@ -49,7 +49,8 @@ bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const ch
   if (!make_room(plan)) return false;
   bool kept = plan->column_count >= plan->axis_columns && !plan->by && text && !word;
   if (kept && (plan->smooth || strut_sweep_is_analysed(plan->study, text)))
-    plan->derived[plan->derived_count++] = plan->column_count;
+    plan->derived[plan->derived_count++] =
+        (strut_derived_column){plan->column_count, !plan->smooth};
   plan->columns[plan->column_count++] = (strut_slot_column){text, unit, word};
   return text != NULL;
 }

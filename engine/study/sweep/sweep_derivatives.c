@@ -33,8 +33,9 @@ static void take_numbers(const derivation *self, const strut_sweep_job *job, dou
                          double *errors) {
   const strut_sweep_plan *plan = self->worker->plan;
   for (size_t j = 0; j < plan->derived_count; j++) {
-    outputs[j] = job->cells.numbers[strut_slot_place(plan->columns, plan->derived[j])];
-    errors[j] = self->noise * fabs(outputs[j]);
+    const strut_derived_column *of = &plan->derived[j];
+    outputs[j] = job->cells.numbers[strut_slot_place(plan->columns, of->column)];
+    errors[j] = of->stepped ? 0.0 : self->noise * fabs(outputs[j]);
   }
 }
 
@@ -124,10 +125,10 @@ strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_
   plan->first_derivative = plan->column_count;
   size_t smooth = plan->derived_count;
   for (size_t j = plan->derived_count = 0; j < smooth; j++)
-    if (count || strut_sweep_is_analysed(study, plan->columns[plan->derived[j]].name))
+    if (count || strut_sweep_is_analysed(study, plan->columns[plan->derived[j].column].name))
       plan->derived[plan->derived_count++] = plan->derived[j];
   for (size_t j = 0; j < plan->derived_count && fine; j++)
-    fine = add_columns(plan, &plan->columns[plan->derived[j]]);
+    fine = add_columns(plan, &plan->columns[plan->derived[j].column]);
   return fine ? STRUT_OK : strut_no_memory(error, "");
 }
 
@@ -141,6 +142,9 @@ static bool make_exact(strut_experiment *experiment, const strut_scene *scene) {
   bool exact = steady ? asked && experiment->accuracy <= ORBIT
                       : adaptive && experiment->tolerance <= TIGHT && !asked;
   if (!exact) experiment->accuracy = steady ? ORBIT : 0.0;
+  for (size_t i = 0; i < experiment->quantity_count; i++)
+    exact = exact && !strut_takes_mean(&experiment->quantities[i]);
+  experiment->exact_means = true;
   if (steady) return exact;
   if (!adaptive) {
     experiment->integrator = "adaptive";
