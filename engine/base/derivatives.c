@@ -129,11 +129,21 @@ static strut_status evaluate_pairs(const differences *self, size_t first, size_t
   return STRUT_OK;
 }
 
-/* By how much an output changes with one step along the pair, and by how much twice on both sides of the point. */
-static double slope(const differences *self, const pair *along, size_t j, double *bend) {
+/* What an output does along a pair. */
+typedef struct change {
+  double slope; /* by one step */
+  double bend;  /* twice its difference from that, on both sides of the point */
+  double jump;  /* by which it changes to one side, while it stays as it is on the other; or 0 */
+} change;
+
+static change change_of(const differences *self, const pair *along, size_t j) {
   double here = self->outputs[j], first = along->values[0][j], second = along->values[1][j];
-  *bend = along->central ? first - here + (second - here) : second - first - (first - here);
-  return along->central ? (first - second) / 2.0 : (4.0 * (first - here) - (second - here)) / 2.0;
+  double one = fabs(first - here), other = fabs(second - (along->central ? here : first));
+  double size = fmax(one, other), least = fmax(MOST_NOISE * fabs(here), 32.0 * noise_of(self, j));
+  bool central = along->central;
+  return (change){central ? (first - second) / 2.0 : (4.0 * (first - here) - (second - here)) / 2.0,
+                  central ? first - here + (second - here) : second - first - (first - here),
+                  fmin(one, other) <= BENT * size && size > least ? size : 0.0};
 }
 
 /* Does a pair change no output from `j` to before `end` by a bit? */
@@ -144,26 +154,10 @@ static bool is_idle(const differences *self, size_t i, size_t j, size_t end) {
          memcmp(along->values[1] + j, self->outputs + j, bytes) == 0;
 }
 
-/* The size of a jump: what an output changes by to one side, while it stays as it is on the other; else 0. */
-static double jump_of(const differences *self, const pair *along, size_t j) {
-  double here = self->outputs[j], first = along->values[0][j], second = along->values[1][j];
-  double one = fabs(first - here), other = fabs(second - (along->central ? here : first));
-  double size = fmax(one, other);
-  bool sharp = fmin(one, other) <= BENT * size && size > MOST_NOISE * fabs(here);
-  return sharp && size > 32.0 * noise_of(self, j) ? size : 0.0;
-}
-
-/* Does an output jump at the point? Smaller steps, which are those along all parameters, make a jump no smaller. */
-static bool is_jump(const differences *self, size_t i, size_t j) {
-  double size = jump_of(self, &self->pairs[i], j);
-  double again = jump_of(self, &self->pairs[self->task->parameter_count], j);
-  return size > 0.0 && fabs(again - size) <= BENT * size;
-}
-
 /* How much an output bends along a parameter: the more, the more its differences are likely to be wrong. */
 static double bend_of(const differences *self, size_t i, size_t j) {
-  double bend, change = slope(self, &self->pairs[i], j, &bend);
-  return fabs(bend) + SLIGHT * fabs(change) + noise_of(self, j);
+  change own = change_of(self, &self->pairs[i], j);
+  return fabs(own.bend) + SLIGHT * fabs(own.slope) + noise_of(self, j);
 }
 
 /*
@@ -196,30 +190,35 @@ static void join_steps(differences *self) {
 static void conclude(const differences *self, size_t j, strut_derivative *to) {
   const size_t n = self->task->parameter_count;
   const pair *all = &self->pairs[n];
-  double together, bend, roots = 0.0, bends = 0.0, off = slope(self, all, j, &together);
+  const change together = change_of(self, all, j);
+  double roots = 0.0, bends = 0.0, off = together.slope;
   double own = isfinite(self->errors[j]) ? self->errors[j] : 0.0, noise = noise_of(self, j);
   for (size_t i = 0; i < n; i++) {
     double part = all->step[i] / self->pairs[i].step[i];
-    off -= part * slope(self, &self->pairs[i], j, &bend);
-    roots += part * sqrt(fabs(bend)), bends += part * fabs(bend);
+    change along = change_of(self, &self->pairs[i], j);
+    off -= part * along.slope;
+    roots += part * sqrt(fabs(along.bend)), bends += part * fabs(along.bend);
   }
   double rounding = 2.0 * DBL_EPSILON * fabs(self->outputs[j]);
-  double uneven = fmax(fabs(together) - roots * roots, 0.0); /* by noise, or by mixed curvature */
+  double uneven =
+      fmax(fabs(together.bend) - roots * roots, 0.0); /* by noise, or by mixed curvature */
   if (isfinite(self->errors[j])) uneven = fmin(uneven, 4.0 * own);
   off = hypot(off, uneven / OF_BEND) + rounding;
   double most = fmax(fmin(2.0 * roots * roots, bends / 2.0), 8.0 * noise);
   for (size_t i = 0; i < n; i++) {
-    double h = self->pairs[i].step[i], change = slope(self, &self->pairs[i], j, &bend);
+    const change along = change_of(self, &self->pairs[i], j);
+    double h = self->pairs[i].step[i], bend = along.bend;
     double error = 2.0 * off / fabs(all->step[i]); /* whose it is, is not known */
-    bool bent = fabs(bend) > BENT * fabs(change);
-    bool lasts = fabs(together) > most && fabs(together) < 1.5 * bends;
+    bool bent = fabs(bend) > BENT * fabs(along.slope);
+    bool lasts = fabs(together.bend) > most && fabs(together.bend) < 1.5 * bends;
+    bool jumps = along.jump > 0.0 && fabs(together.jump - along.jump) <= BENT * along.jump;
     if (!all->central) lasts = error * fabs(h) > fabs(bend) / 2.0; /* which differ in all steps */
     if (n > 1 && bent) error += fabs(bend / h);                    /* not told apart for certain */
-    to[i].value = change / h;
+    to[i].value = along.slope / h;
     to[i].error = error + own / scale_of(&self->task->parameters[i]);
     to[i].verdict = STRUT_DERIVATIVE_THERE;
-    if (bent && lasts && fabs(bend) > 32.0 * noise) to[i].verdict = STRUT_DERIVATIVE_NONE;
-    if (is_jump(self, i, j)) to[i].verdict = STRUT_DERIVATIVE_NONE;
+    if ((bent && lasts && fabs(bend) > 32.0 * noise) || jumps)
+      to[i].verdict = STRUT_DERIVATIVE_NONE;
     if (!isfinite(to[i].value + to[i].error)) to[i].verdict = STRUT_DERIVATIVE_UNKNOWN;
     if (to[i].verdict != STRUT_DERIVATIVE_THERE) to[i].value = to[i].error = (double)NAN;
     if (!is_idle(self, i, j, j + 1) || isnan(self->outputs[j])) continue;

@@ -122,7 +122,7 @@ typedef struct strut_experiment {
   double refine_memory; /* taken from the scene: in relaxation times [1]; default 8 */
   double
       accuracy; /* wanted relative error of the measured quantity [1], by which method and step are chosen; 0: they are as given */
-  bool exact_means;      /* of quantities: for differences of runs */
+  bool exact_sums;       /* of quantities: for differences of runs */
   bool accuracy_assumed; /* the scene says nothing of the solver, so it is STRUT_USUAL_ACCURACY */
   double budget;         /* work allowed for it, in fine runs with a fixed step */
   strut_steady steady;

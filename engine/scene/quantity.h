@@ -95,9 +95,10 @@ typedef struct strut_quantity_definition {
   const char *target_unit;   /* of ARRIVAL: that unit; "1": none */
 } strut_quantity_definition;
 
-/** Is its value an integral over the window? */
-static inline bool strut_takes_mean(const strut_quantity_definition *quantity) {
-  return quantity->take == STRUT_TAKE_MEAN || quantity->take == STRUT_TAKE_RMS;
+/** Is its value a sum over the window? */
+static inline bool strut_takes_sum(const strut_quantity_definition *quantity) {
+  return quantity->take == STRUT_TAKE_MEAN || quantity->take == STRUT_TAKE_RMS ||
+         quantity->take == STRUT_TAKE_RISE;
 }
 
 /**

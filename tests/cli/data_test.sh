@@ -140,6 +140,8 @@ for bytes in '' '\n' ',' '"' '"\n"' ',,,\n,,\n' 't [s],u [mm]' 't [s],u [mm]\n' 
     grep -qE '^(hostile.yaml|sine.csv):[0-9]+:[0-9]+: error: ' err || fail "'$bytes'$keys: no place"
   done
 done
+printf '\377\376t\0' >sine.csv
+refuses 2 "sine.csv:1:1: error: the file is UTF-16; save it as UTF-8" check lines.yaml
 ln -s /dev/zero zero.csv
 mkfifo pipe.csv
 for name in zero.csv pipe.csv /etc/passwd ../x.csv . ''; do

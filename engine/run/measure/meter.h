@@ -102,7 +102,7 @@ typedef struct strut_meter {
   size_t *index;   /* (length) the columns of the program */
   size_t rate_of;  /* column whose change is the integral of a single velocity; or -1 */
   bool inner;      /* what happens between steps matters */
-  bool exact;      /* a mean whose errors must not show in differences of runs */
+  bool exact;      /* a sum whose errors must not show in differences of runs */
   double accuracy; /* relative, to which extremes are resolved [1] */
   /* branches of the program: at the ends of the latest part and of that under way; evaluated last */
   uint64_t branch, ahead, seen;

@@ -235,7 +235,7 @@ static bool make_meter(strut_quantities *quantities, const strut_quantity_defini
   if (mean && find_primitive(definition->program[0].column, &primitive))
     meter->rate_of = strut_columns_add(&quantities->columns, primitive);
   meter->inner = needs_inner(meter);
-  meter->exact = experiment->exact_means && meter->inner && strut_takes_mean(definition);
+  meter->exact = experiment->exact_sums && meter->inner && strut_takes_sum(definition);
   meter->accuracy = accuracy > 0.0 ? accuracy : USUAL_ACCURACY;
   quantities->inner = quantities->inner || meter->inner;
   return true;

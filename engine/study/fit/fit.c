@@ -51,11 +51,7 @@ static const double OUTSIDE = 0.05;
 enum { KIND, OF, END, WORDS, SUM = 0, USED, EVALUATIONS, NUMBERS };
 enum { START, BESIDE, LOW, HIGH, WITHOUT };
 static const char *const kinds[] = {"start", "beside", "low", "high", "without"};
-static const struct {
-  const char *name;
-  bool word;
-} columns[] = {{"kind", true}, {"of", true},    {"end", true},
-               {"sum", false}, {"used", false}, {"evaluations", false}};
+static const char *const columns[] = {"kind", "of", "end", "sum", "used", "evaluations"};
 
 /* A fit of a study while it is made. */
 typedef struct fitting {
@@ -78,29 +74,22 @@ static int32_t matches_delay(const strut_study_fit *fit, size_t k) {
 
 /* ---- parameters ---- */
 
-static bool is_aligned(const strut_fit_layout *layout, size_t i) {
-  return i < layout->aligned_count;
-}
-
-static const strut_search_variable *variable_of(const strut_fit_layout *layout, size_t i) {
-  return &layout->fit->variables[i - layout->aligned_count];
-}
-
 double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter) {
-  if (!is_aligned(layout, i))
-    return strut_search_value(variable_of(layout, i), parameter - 1.0).number;
-  return (parameter - 1.0) * layout->aligned[i].scale;
+  const strut_fit_unknown *of = &layout->unknowns[i];
+  return of->variable ? strut_search_value(of->variable, parameter - 1.0).number
+                      : (parameter - 1.0) * of->scale;
 }
 
 double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value) {
-  if (!is_aligned(layout, i))
-    return 1.0 + strut_search_number(variable_of(layout, i), (strut_study_value){.number = value});
-  return 1.0 + value / layout->aligned[i].scale;
+  const strut_fit_unknown *of = &layout->unknowns[i];
+  return 1.0 + (of->variable
+                    ? strut_search_number(of->variable, (strut_study_value){.number = value})
+                    : value / of->scale);
 }
 
 double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter) {
-  if (is_aligned(layout, i)) return layout->aligned[i].scale;
-  const strut_search_variable *variable = variable_of(layout, i);
+  const strut_search_variable *variable = layout->unknowns[i].variable;
+  if (!variable) return layout->unknowns[i].scale;
   if (!variable->logarithmic) return variable->to - variable->from;
   return strut_fit_value(layout, i, parameter) * log(variable->to / variable->from);
 }
@@ -120,11 +109,11 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
   strut_search_spread spread =
       strut_search_spread_begin(fit->variable_count + layout->aligned_count, (uint64_t)fit->seed);
   for (size_t i = 0; i < layout->parameters; i++) {
+    const strut_fit_unknown *of = &layout->unknowns[i];
     size_t k = i - layout->aligned_count;
-    const double *starts = is_aligned(layout, i) ? layout->aligned[i].starts : NULL;
-    parameters[i] = starts       ? strut_fit_parameter(layout, i, starts[start % 4 == 2])
-                    : start == 0 ? 1.0 + strut_search_start(&fit->variables[k])
-                                 : 1.0 + strut_search_spread_at(&spread, start - 1, k);
+    parameters[i] = !of->variable ? strut_fit_parameter(layout, i, of->starts[start % 4 == 2])
+                    : start == 0  ? 1.0 + strut_search_start(of->variable)
+                                  : 1.0 + strut_search_spread_at(&spread, start - 1, k);
   }
 }
 
@@ -337,18 +326,24 @@ static strut_status fit_beside(const fitting *self, strut_fit_case *one, size_t 
 
 /* What row is which fit. */
 typedef struct row_kind {
-  int kind;    /* of `kinds` */
-  size_t item; /* start, variable, match, or what is beside */
+  int kind;         /* of `kinds` */
+  size_t item;      /* start, variable, match, or what is beside */
+  const char *name; /* of the variable or match */
 } row_kind;
 
 static row_kind kind_of(const strut_study_fit *fit, int64_t row) {
-  int64_t profiles = 2 * (int64_t)fit->variable_count, beside = (int64_t)fit->beside_count;
-  if (row < fit->starts) return (row_kind){START, (size_t)row};
-  row -= fit->starts;
-  if (row < STRUT_FIT_ROUNDS * beside) return (row_kind){BESIDE, (size_t)(row % beside)};
-  row -= STRUT_FIT_ROUNDS * beside;
-  if (row < profiles) return (row_kind){row % 2 ? HIGH : LOW, (size_t)row / 2};
-  return (row_kind){WITHOUT, (size_t)(row - profiles)};
+  size_t i = (size_t)row, starts = (size_t)fit->starts, variables = fit->variable_count;
+  size_t all_beside = STRUT_FIT_ROUNDS * fit->beside_count;
+  if (i < starts) return (row_kind){START, i, ""};
+  i -= starts;
+  size_t along = i < all_beside ? i % fit->beside_count : variables;
+  if (along < variables) return (row_kind){BESIDE, along, fit->variables[along].name};
+  if (i < all_beside)
+    return (row_kind){BESIDE, along, fit->matches[matches_delay(fit, along - variables)].name};
+  i -= all_beside;
+  if (i < 2 * variables) return (row_kind){i % 2 ? HIGH : LOW, i / 2, fit->variables[i / 2].name};
+  i -= 2 * variables;
+  return (row_kind){WITHOUT, i, fit->matches[i].name};
 }
 
 static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind what,
@@ -367,15 +362,6 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
 
 /* ---- rows ---- */
 
-static const char *item_name(const strut_study_fit *fit, row_kind what) {
-  size_t variables = fit->variable_count;
-  bool delay = what.kind == BESIDE && what.item >= variables;
-  return what.kind == START     ? ""
-         : delay                ? fit->matches[matches_delay(fit, what.item - variables)].name
-         : what.kind == WITHOUT ? fit->matches[what.item].name
-                                : fit->variables[what.item].name;
-}
-
 /* The cells of a row: axes, words, numbers, alignments. */
 static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
                      const strut_fit_case *one, const double *parameters,
@@ -386,7 +372,7 @@ static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
   strut_fit_fill_values(layout, point, parameters, cells->values);
   strut_sweep_axes(layout->plan, cells->values, cells);
   strut_sweep_word(cells, kinds[what.kind]);
-  strut_sweep_word(cells, item_name(layout->fit, what));
+  strut_sweep_word(cells, what.name);
   strut_sweep_word(cells, strut_fit_ends[solution->end]);
   strut_sweep_number(cells, solution->sum);
   strut_sweep_number(cells, (double)one->used);
@@ -440,8 +426,8 @@ static bool read_row(const fitting *self, int64_t point, strut_fit_row *row) {
   row->sum = numbers[SUM];
   row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
   for (size_t i = 0; i < n; i++) {
-    bool aligned = is_aligned(layout, i);
-    row->values[i] = aligned ? numbers[NUMBERS + i] : slot.numbers[own + i - layout->aligned_count];
+    row->values[i] = i < layout->aligned_count ? numbers[NUMBERS + i]
+                                               : slot.numbers[own + i - layout->aligned_count];
     row->parameters[i] = strut_fit_parameter(layout, i, row->values[i]);
   }
   return true;
@@ -455,9 +441,10 @@ strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_fit_refusal *re
   bool fine = !status;
   if (fine) plan->column_count = plan->axis_columns;
   for (size_t i = 0; i < WORDS + NUMBERS && fine; i++)
-    fine = strut_sweep_add_column(plan, "", columns[i].name, "1", columns[i].word);
+    fine = strut_sweep_add_column(plan, "", columns[i], "1", i < WORDS);
   for (size_t i = 0; i < layout.aligned_count && fine; i++)
-    fine = strut_sweep_add_column(plan, "", layout.aligned[i].name, layout.aligned[i].unit, false);
+    fine =
+        strut_sweep_add_column(plan, "", layout.unknowns[i].name, layout.unknowns[i].unit, false);
   if (!status && !fine) status = strut_no_memory(error, "");
   strut_fit_layout_free(&layout);
   return status;
@@ -573,11 +560,9 @@ static bool fill_estimates(fitting *self) {
     double slope = fabs(strut_fit_slope(layout, i, self->best[i]));
     double error = sqrt(covariance[i * n + i]), value = strut_fit_value(layout, i, self->best[i]);
     strut_fit_estimate *estimate = &result->estimates[i];
-    const strut_search_variable *variables = layout->fit->variables;
-    const char *name = i < first ? layout->aligned[i].name : variables[i - first].name;
-    const char *unit = i < first ? layout->aligned[i].unit : variables[i - first].unit;
-    *estimate = (strut_fit_estimate){.name = strut_arena_text(&result->arena, name, strlen(name)),
-                                     .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
+    const strut_fit_unknown *of = &layout->unknowns[i];
+    *estimate = (strut_fit_estimate){.name = strut_arena_format(&result->arena, "%s", of->name),
+                                     .unit = strut_arena_format(&result->arena, "%s", of->unit),
                                      .value = value,
                                      .also = (double)NAN,
                                      .error = slope * error * result->scale,

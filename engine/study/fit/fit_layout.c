@@ -116,7 +116,8 @@ static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns wha
   const char *name =
       strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
   size_t i = layout->aligned_count++;
-  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], {start, first}, scale};
+  layout->unknowns[i] =
+      (strut_fit_unknown){name, units[what], NULL, m, what, {start, first}, scale};
   layout->low[i] = 1.0 + from / scale;
   layout->high[i] = 1.0 + to / scale;
   return name != NULL;
@@ -208,15 +209,18 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
   size_t most = STRUT_FIT_ALIGNS_COUNT * fit->match_count, all = most + fit->variable_count;
   layout->standing = strut_equilibrium_cache_create();
   if (!layout->standing ||
-      !STRUT_ALLOCATE(&layout->arena, STRUT_NEW(layout->aligned, most),
+      !STRUT_ALLOCATE(&layout->arena, STRUT_NEW(layout->unknowns, all),
                       STRUT_NEW(layout->parts, fit->match_count),
                       STRUT_NEW(layout->measured, layout->count), STRUT_NEW(layout->low, all),
                       STRUT_NEW(layout->high, all)))
     return strut_no_memory(error, "");
   strut_status status = find_all(layout, error);
   layout->parameters = layout->aligned_count + fit->variable_count;
-  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+  for (size_t i = layout->aligned_count, k = 0; k < fit->variable_count; i++, k++) {
+    const strut_search_variable *of = &fit->variables[k];
+    layout->unknowns[i] = (strut_fit_unknown){of->name, of->unit, .variable = of};
     layout->low[i] = 1.0, layout->high[i] = 2.0;
+  }
   return status ? status : check_count(layout, error);
 }
 

@@ -26,13 +26,14 @@ typedef enum strut_fit_aligns {
 /** A film that begins at most this many of its lengths late may have the clock of the run. */
 #define STRUT_FIT_OWN_CLOCK 10.0
 
-/** A number of an alignment. */
-typedef struct strut_fit_aligned {
+/** A parameter of the problem. */
+typedef struct strut_fit_unknown {
+  const char *name, *unit;               /* "film.shift_x" */
+  const strut_search_variable *variable; /* NULL: a number of an alignment, as follows */
   size_t match;
   strut_fit_aligns what;
-  const char *name, *unit; /* "film.shift_x" */
   double starts[2], scale; /* SI; the second of a start in four */
-} strut_fit_aligned;
+} strut_fit_unknown;
 
 /** A series as the model has it. */
 typedef struct strut_fit_source {
@@ -55,9 +56,9 @@ typedef struct strut_fit_layout {
   const strut_study_fit *fit;
   size_t count; /* of residuals */
   size_t aligned_count, parameters;
-  strut_fit_aligned *aligned;
-  strut_fit_part *parts; /* (matches) */
-  double *measured;      /* (count) */
+  strut_fit_unknown *unknowns; /* (parameters) */
+  strut_fit_part *parts;       /* (matches) */
+  double *measured;            /* (count) */
   bool noise_known;
   double *low, *high; /* (parameters) the box */
   strut_equilibrium_cache *standing;

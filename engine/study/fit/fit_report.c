@@ -162,15 +162,12 @@ static bool takes_part(const strut_fit_spectrum *spectrum, double scale, size_t 
 }
 
 /* What of two parameters is determined where a direction is not: "k/m", "k*m", or "a + 0.98 b" over the ranges. */
-static const char *name_determined(strut_fit_result *result, size_t i, size_t j, double other) {
-  const strut_fit_estimate *first = &result->estimates[i], *second = &result->estimates[j];
-  size_t aligned = result->aligned_count;
-  const strut_search_variable *variables = result->fit->variables;
-  if (i < aligned || j < aligned || !variables[i - aligned].logarithmic ||
-      !variables[j - aligned].logarithmic)
+static const char *name_determined(const strut_fit_unknown *first, const strut_fit_unknown *second,
+                                   double other, strut_fit_result *result) {
+  const strut_search_variable *one = first->variable, *two = second->variable;
+  if (!one || !two || !one->logarithmic || !two->logarithmic)
     return strut_arena_format(&result->arena, "%.40s %c %.3g %.40s", first->name,
                               other < 0.0 ? '-' : '+', fabs(other), second->name);
-  const strut_search_variable *one = &variables[i - aligned], *two = &variables[j - aligned];
   double power = other * log(one->to / one->from) / log(two->to / two->from);
   char text[40] = "";
   if (fabs(fabs(power) - 1.0) > WHOLE) snprintf(text, sizeof text, "^%.3g", fabs(power));
@@ -182,7 +179,8 @@ static const char *name_determined(strut_fit_result *result, size_t i, size_t j,
  * "friction and damping together", and what of two is determined: the fitted ones that take part, then the
  * alignments. False: memory is out.
  */
-static bool describe_direction(strut_fit_result *result, const bool *takes, const double *part,
+static bool describe_direction(const strut_fit_layout *layout, const bool *takes,
+                               const double *part, strut_fit_result *result,
                                strut_fit_direction *direction) {
   strut_buffer text = {0};
   size_t taken = 0, pair[2] = {0, 0};
@@ -198,8 +196,8 @@ static bool describe_direction(strut_fit_result *result, const bool *takes, cons
   direction->words = words ? strut_arena_text(&result->arena, words, strlen(words)) : NULL;
   strut_release(words);
   if (taken == 2)
-    direction->determined =
-        name_determined(result, pair[0], pair[1], -part[pair[0]] / part[pair[1]]);
+    direction->determined = name_determined(&layout->unknowns[pair[0]], &layout->unknowns[pair[1]],
+                                            -part[pair[0]] / part[pair[1]], result);
   return direction->words && (taken != 2 || direction->determined);
 }
 
@@ -222,7 +220,7 @@ static bool find_directions(const strut_fit_layout *layout, const strut_fit_spec
     }
     strut_fit_direction *direction = &result->directions[result->direction_count++];
     *direction = (strut_fit_direction){.error = error, .part = part + first};
-    if (!describe_direction(result, takes, part, direction)) return false;
+    if (!describe_direction(layout, takes, part, result, direction)) return false;
   }
   return result->directions != NULL;
 }
@@ -245,7 +243,7 @@ static bool is_another(const strut_fit_layout *layout, strut_fit_result *result,
   for (size_t i = 0; i < layout->aligned_count; i++) {
     strut_fit_estimate *estimate = &result->estimates[i];
     double far = fabs(row->values[i] - estimate->value);
-    if (layout->aligned[i].what == STRUT_FIT_DELAY && differs(result, row, i) &&
+    if (layout->unknowns[i].what == STRUT_FIT_DELAY && differs(result, row, i) &&
         !(far >= fabs(estimate->also - estimate->value)))
       estimate->also = row->values[i];
   }

@@ -32,8 +32,8 @@ typedef struct alignment {
 static alignment align(const strut_fit_layout *layout, size_t match, const double *parameters) {
   alignment a = {{0.0}};
   for (size_t i = 0; i < layout->aligned_count; i++)
-    if (layout->aligned[i].match == match)
-      a.number[layout->aligned[i].what] = strut_fit_value(layout, i, parameters[i]);
+    if (layout->unknowns[i].match == match)
+      a.number[layout->unknowns[i].what] = strut_fit_value(layout, i, parameters[i]);
   return a;
 }
 
@@ -338,7 +338,7 @@ static void choose_delays(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
   double now = self->align.number[STRUT_FIT_DELAY], span = strut_fit_span(self->match);
   for (size_t i = 0; i < layout->aligned_count; i++) {
-    if (layout->aligned[i].match != self->index || layout->aligned[i].what != STRUT_FIT_DELAY)
+    if (layout->unknowns[i].match != self->index || layout->unknowns[i].what != STRUT_FIT_DELAY)
       continue;
     double low = strut_fit_value(layout, i, layout->low[i]);
     double high = strut_fit_value(layout, i, layout->high[i]);
@@ -353,16 +353,16 @@ static void keep_placing(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
   self->one->placed_sum += place(self->one, self->index, &self->align);
   for (size_t i = 0; i < layout->aligned_count; i++)
-    if (layout->aligned[i].match == self->index)
+    if (layout->unknowns[i].match == self->index)
       self->one->placing[i] =
-          strut_fit_parameter(layout, i, self->align.number[layout->aligned[i].what]);
+          strut_fit_parameter(layout, i, self->align.number[layout->unknowns[i].what]);
 }
 
 /* Do both have the same runs? Shifts and turns need none. */
 static bool has_same_runs(const strut_fit_layout *layout, const double *a, const double *b) {
   size_t i = 0;
   while (i < layout->parameters && (a[i] == b[i] || (i < layout->aligned_count &&
-                                                     layout->aligned[i].what != STRUT_FIT_DELAY)))
+                                                     layout->unknowns[i].what != STRUT_FIT_DELAY)))
     i++;
   return i == layout->parameters;
 }

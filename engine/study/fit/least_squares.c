@@ -215,7 +215,6 @@ static strut_status iterate(solver *self, gsl_vector *x, strut_fit_solution *sol
   bool fine =
       !gsl_multifit_nlinear_init(x, &system, workspace) && converge(self, workspace, solution->sum);
   gsl_vector_memcpy(x, gsl_multifit_nlinear_position(workspace));
-  solution->steps = (int64_t)gsl_multifit_nlinear_niter(workspace);
   solution->sum =
       sum_of_squares(gsl_multifit_nlinear_residual(workspace)->data, self->problem->count);
   solution->end = fine && !self->lost ? STRUT_FIT_CONVERGED : STRUT_FIT_STUCK;

@@ -46,7 +46,6 @@ extern const char *const strut_fit_ends[STRUT_FIT_END_COUNT];
 typedef struct strut_fit_solution {
   strut_fit_end end;
   double sum; /* of squared residuals */
-  int64_t steps;
 } strut_fit_solution;
 
 /** Moves the parameters to the least sum nearby. STRUT_OK, whatever the end; STRUT_NO_MEMORY. */

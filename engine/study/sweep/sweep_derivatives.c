@@ -143,8 +143,8 @@ static bool make_exact(strut_experiment *experiment, const strut_scene *scene) {
                       : adaptive && experiment->tolerance <= TIGHT && !asked;
   if (!exact) experiment->accuracy = steady ? ORBIT : 0.0;
   for (size_t i = 0; i < experiment->quantity_count; i++)
-    exact = exact && !strut_takes_mean(&experiment->quantities[i]);
-  experiment->exact_means = true;
+    exact = exact && !strut_takes_sum(&experiment->quantities[i]);
+  experiment->exact_sums = true;
   if (steady) return exact;
   if (!adaptive) {
     experiment->integrator = "adaptive";

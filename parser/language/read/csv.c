@@ -326,10 +326,13 @@ strut_status strut_csv_read(const char *text, size_t length, int header,
   *csv = (strut_csv){.text = text};
   csv->copy = r.at = strut_arena_text(&csv->arena, text, length);
   r.failed = !r.at;
-  if (nul)
+  const char *wide = strut_text_wide(text, length);
+  if (wide)
+    strut_diagnose(diagnostics, strut_place_at(1, 1, 1), "the file is %s; save it as UTF-8", wide);
+  else if (nul)
     strut_diagnose(diagnostics, place_of(text, nul, 1),
                    "a NUL byte is not allowed; the file is damaged, or no text");
-  if (r.at && !nul) {
+  if (r.at && !nul && !wide) {
     r.end = r.at + length;
     r.at += strut_text_mark(text, length);
     r.separator = find_separator(&r, (size_t)header);

@@ -67,13 +67,6 @@ bool strut_refuse_data(strut_reader *reader, const strut_tree *value, const stru
   return false;
 }
 
-/* Reports about a cell of the table that is being read. */
-static bool refuse_cell(loader *self, const strut_tree *used, size_t cell, const char *message) {
-  report_in_file(self->reader, strut_csv_place(&self->csv, cell),
-                 show_file(self->reader, self->table), used, message);
-  return false;
-}
-
 static bool refuse_column(loader *self, const strut_tree *at, const char *name) {
   return strut_report_error(self->reader, at->place, "'%s' has no column '%s'",
                             strut_sanitised_text(self->reader, self->table->file),
@@ -313,10 +306,11 @@ static bool name_columns(loader *self) {
   for (size_t i = 0; i < self->table->column_count; i++) {
     const char *name = self->csv.titles[i].name;
     self->columns[i].name = strut_keep_text(self->reader, name);
-    for (size_t k = 0; k < i && *name; k++)
-      if (strcmp(self->csv.titles[k].name, name) == 0)
-        return refuse_cell(self, value_of(self, STRUT_KEY_DATA_FILE), i,
-                           "an earlier column has this name too, give one of them another");
+    if (!*name || strut_row_find(STRUT_NAMED(self->csv.titles, i), name) == i) continue;
+    report_in_file(self->reader, strut_csv_place(&self->csv, i),
+                   show_file(self->reader, self->table), value_of(self, STRUT_KEY_DATA_FILE),
+                   "an earlier column has this name too, give one of them another");
+    return false;
   }
   return true;
 }

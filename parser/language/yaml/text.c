@@ -58,6 +58,20 @@ size_t strut_text_mark(const char *text, size_t length) {
   return length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
 }
 
+const char *strut_text_wide(const char *text, size_t length) {
+  static const struct {
+    const char *mark, *name;
+    size_t length;
+  } marks[] = {{"\xFF\xFE\0", "UTF-32", 4},
+               {"\0\0\xFE\xFF", "UTF-32", 4},
+               {"\xFF\xFE", "UTF-16", 2},
+               {"\xFE\xFF", "UTF-16", 2}};
+  for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+    if (length >= marks[i].length && memcmp(text, marks[i].mark, marks[i].length) == 0)
+      return marks[i].name;
+  return NULL;
+}
+
 bool strut_text_forbidden(uint32_t code) {
   if (code < 0x20) return code != '\t' && code != '\n' && code != '\r';
   if (code < 0x7F) return false;
@@ -220,17 +234,9 @@ bool strut_document_scan(strut_diagnostics *diagnostics) {
                    length >> 20, STRUT_TEXT_MOST >> 20);
     return false;
   }
-  bool wide =
-      length >= 4 && (memcmp(text, "\xFF\xFE\0\0", 4) == 0 || memcmp(text, "\0\0\xFE\xFF", 4) == 0);
-  if (wide) {
-    strut_diagnose(diagnostics, (strut_place){0}, "the file is UTF-32; save it as UTF-8");
-    return false;
-  }
-  if (length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0)) {
-    strut_diagnose(diagnostics, (strut_place){0}, "the file is UTF-16; save it as UTF-8");
-    return false;
-  }
-  return scan_characters(diagnostics) && scan_directives(diagnostics);
+  const char *wide = strut_text_wide(text, length);
+  if (wide) strut_diagnose(diagnostics, (strut_place){0}, "the file is %s; save it as UTF-8", wide);
+  return !wide && scan_characters(diagnostics) && scan_directives(diagnostics);
 }
 
 /* libyaml's problem and context, and the message that replaces them. */

@@ -21,6 +21,8 @@ size_t strut_text_break(const char *text, size_t left);
 size_t strut_text_points(const char *text, size_t length);
 /** Bytes of a byte order mark at the beginning: 3 or 0. */
 size_t strut_text_mark(const char *text, size_t length);
+/** "UTF-16" or "UTF-32" where the text begins with the byte-order mark of one of them, else NULL. */
+const char *strut_text_wide(const char *text, size_t length);
 /** True for a code point that no text may hold: controls except tab and breaks, U+FEFF, ... */
 bool strut_text_forbidden(uint32_t code);
 /** True for a code point of a valid text that a terminal does not show but acts on: what turns the direction of
