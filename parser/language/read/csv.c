@@ -77,49 +77,39 @@ static void keep(reader *self, char *from, char *to) {
     *comma = '.';
 }
 
-/* A cell in quotes, which are doubled inside. */
-static void read_quoted(reader *self) {
-  char *open = self->at, *to = ++self->at, *from = to;
-  for (; from < self->end && (*from != '"' || from[1] == '"'); from++) {
-    if (*from == '"') from++;
-    *to++ = *from;
-  }
-  if (from >= self->end) report(self, open, "unterminated quoted cell");
-  self->at = from < self->end ? from + 1 : self->end;
-  if (self->at < self->end && *self->at != self->separator && !strchr("\r\n", *self->at))
-    report(self, self->at,
-           self->separator == ',' ? "expected a comma or the end of the line after a quoted cell"
-                                  : "expected the end of the cell after its quote");
-  *to = '\0';
-  keep(self, open + 1, to);
-  while (self->at < self->end && *self->at != self->separator && *self->at != '\n') self->at++;
-}
-
-/* Without spaces around it. */
-static void read_plain(reader *self) {
-  char *from = self->at, *to = from;
-  while (to < self->end && *to != self->separator && *to != '\n') to++;
-  self->at = to;
-  if (to > from && to[-1] == '\r') *--to = '\0';
-  while (*from == ' ' && from < to) from++;
-  while (to > from && to[-1] == ' ') *--to = '\0';
-  keep(self, from, to);
-}
-
-/* Reads one line. */
+/* Reads one line. In quotes, quotes are doubled; other cells are without spaces around them. */
 static record read_line(reader *self) {
-  record result = {.first = self->cell_count};
-  for (bool last = false; !last && !self->failed;) {
-    if (self->at < self->end && *self->at == '"')
-      read_quoted(self);
-    else
-      read_plain(self);
-    last = self->at >= self->end || *self->at == '\n';
-    *self->at = '\0'; /* behind the text is one, too */
-    if (self->at < self->end) self->at++;
+  record line = {.first = self->cell_count};
+  char *from = self->at, *to = from; /* begin of the cell; where its next character goes */
+  enum { PLAIN, QUOTED, CLOSED, WRONG } state = PLAIN;
+  for (bool last = false; !last && !self->failed; self->at += self->at < self->end) {
+    char c = *self->at;
+    bool over = self->at >= self->end, twice = c == '"' && self->at[1] == '"';
+    last = over || (c == '\n' && state != QUOTED);
+    if (state == QUOTED && !over) {
+      if (c == '"' && !twice) state = CLOSED;
+      if (state == QUOTED) *to++ = c, self->at += twice;
+    } else if (last || c == self->separator) {
+      if (state == QUOTED) report(self, from - 1, "unterminated quoted cell");
+      if (state == PLAIN && to > from && to[-1] == '\r') to--;
+      while (state == PLAIN && to > from && to[-1] == ' ') to--;
+      while (state == PLAIN && from < to && *from == ' ') from++;
+      *self->at = *to = '\0'; /* behind the text is one, too */
+      keep(self, from, to);
+      from = to = self->at + 1, state = PLAIN;
+    } else if (c == '"' && self->at == from && state == PLAIN) {
+      state = QUOTED, from = ++to;
+    } else if (state == PLAIN) {
+      to++;
+    } else if (state == CLOSED && c != '\r') {
+      report(self, self->at,
+             self->separator == ',' ? "expected a comma or the end of the line after a quoted cell"
+                                    : "expected the end of the cell after its quote");
+      state = WRONG;
+    }
   }
-  result.count = self->cell_count - result.first;
-  return result;
+  line.count = self->cell_count - line.first;
+  return line;
 }
 
 /* The next line that is neither a comment nor, unless those count, empty; count 0 after the last. */
@@ -164,21 +154,17 @@ static const char *head_cell(const reader *self, size_t line, size_t column) {
   return column < r->count ? self->cell[r->first + column] : "";
 }
 
-static size_t filled(const reader *self, size_t line) {
-  size_t count = 0;
-  for (size_t i = 0; i < self->head[line].count; i++) count += *head_cell(self, line, i) != '\0';
-  return count;
-}
-
 static bool is_number(const char *text) {
   double value;
   return strut_csv_number(text, 0, &value) && !isnan(value);
 }
 
-static bool has_number(const reader *self, size_t line) {
-  for (size_t i = 0; i < self->head[line].count; i++)
-    if (is_number(head_cell(self, line, i))) return true;
-  return false;
+static bool is_filled(const char *text) { return *text; }
+
+static size_t count_cells(const reader *self, size_t line, bool (*is)(const char *text)) {
+  size_t count = 0;
+  for (size_t i = 0; i < self->head[line].count; i++) count += is(head_cell(self, line, i));
+  return count;
 }
 
 /* The text without brackets around it. */
@@ -209,12 +195,13 @@ static bool is_of_units(reader *self, size_t line) {
  */
 static size_t count_header(reader *self) {
   size_t count = 1, last = self->head_count - 1;
-  bool more = last > 1 &&
-              (filled(self, 0) < filled(self, 1) || strcmp(head_cell(self, 0, 0), "scorer") == 0);
-  while (more && count < last && !has_number(self, count)) count++;
-  if (!more && last > 1 && !has_number(self, 1) && has_number(self, 2) && is_of_units(self, 1))
+  bool more = last > 1 && (count_cells(self, 0, is_filled) < count_cells(self, 1, is_filled) ||
+                           strcmp(head_cell(self, 0, 0), "scorer") == 0);
+  while (more && count < last && !count_cells(self, count, is_number)) count++;
+  if (!more && last > 1 && !count_cells(self, 1, is_number) && count_cells(self, 2, is_number) &&
+      is_of_units(self, 1))
     count++;
-  return count <= last && has_number(self, count) ? count : 1;
+  return count <= last && count_cells(self, count, is_number) ? count : 1;
 }
 
 /* Finds the names, and where rows begin. False: that was reported. */
@@ -234,9 +221,9 @@ static bool read_header(reader *self, size_t header) {
     return false;
   }
   size_t last = self->rows = header ? header : count_header(self);
-  while (last > 1 && filled(self, last - 1) == 0) last--;
+  while (last > 1 && count_cells(self, last - 1, is_filled) == 0) last--;
   self->units = last > 1 && is_of_units(self, last - 1) ? --last : SIZE_MAX;
-  while (last > 1 && filled(self, last - 1) == 0) last--;
+  while (last > 1 && count_cells(self, last - 1, is_filled) == 0) last--;
   self->names = last - 1;
   return !self->failed;
 }

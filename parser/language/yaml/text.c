@@ -59,17 +59,10 @@ size_t strut_text_mark(const char *text, size_t length) {
 }
 
 const char *strut_text_wide(const char *text, size_t length) {
-  static const struct {
-    const char *mark, *name;
-    size_t length;
-  } marks[] = {{"\xFF\xFE\0", "UTF-32", 4},
-               {"\0\0\xFE\xFF", "UTF-32", 4},
-               {"\xFF\xFE", "UTF-16", 2},
-               {"\xFE\xFF", "UTF-16", 2}};
-  for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
-    if (length >= marks[i].length && memcmp(text, marks[i].mark, marks[i].length) == 0)
-      return marks[i].name;
-  return NULL;
+  if (length >= 4 && (memcmp(text, "\xFF\xFE\0", 4) == 0 || memcmp(text, "\0\0\xFE\xFF", 4) == 0))
+    return "UTF-32";
+  bool wide = length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0);
+  return wide ? "UTF-16" : NULL;
 }
 
 bool strut_text_forbidden(uint32_t code) {
