@@ -4,8 +4,6 @@
 # have made. Parameters that act alike, models that are wrong, starts that end elsewhere are refused, never given an
 # interval. The same bytes whatever the threads, kills and workers.
 #
-#   python3 fit_test.py STRUT [--long]
-#
 # --long: intervals of 200 noises hold in 90 to 98 % of them; 50 starts within 50 % (half an hour).
 import math
 import os

@@ -87,7 +87,6 @@ TEST(jumps_and_what_rounding_hides) {
   strut_derivative d[OUTPUTS][COUNT];
   find(usual, d);
   assert_int_equal(d[6][0].verdict, STRUT_DERIVATIVE_NONE);
-  expect(d[6][1], 0.0, 1e-6);
   expect(d[7][0], 1.0, 1e3);
-  assert_true(d[8][0].value == 0.0 && d[8][0].error == 0.0);
+  expect(d[8][0], 0.0, 0.0);
 }

@@ -33,9 +33,8 @@ typedef enum strut_fit_verdict {
 typedef struct strut_fit_estimate {
   const char *name, *unit; /* unit "1": none */
   double value;
-  double error; /* standard error, from the derivatives; HUGE_VAL if unknown */
-  double low,
-      high; /* 95 %, by the profile; NAN: not given, or without an end. Of an alignment by the error */
+  double error;     /* standard error, from the derivatives; HUGE_VAL if unknown */
+  double low, high; /* 95 %, by the profile, of an alignment by the error; NAN: not given */
   double linear_low, linear_high; /* 95 %, by the error */
   bool at_bound;                  /* the value is an end of its range */
   double also;                    /* another delay that fits as well; NAN: none does */
@@ -58,8 +57,7 @@ typedef struct strut_fit_residuals {
   int64_t used;
   double rms;        /* of numbers, SI, weighted */
   double chi_square; /* sum of squares in units of the noise; NAN: that is not known */
-  double
-      lag; /* correlation of successive residuals of a motion, in its standard errors; NAN: no motion */
+  double lag; /* correlation of successive residuals, in its standard errors; NAN: no motion */
 } strut_fit_residuals;
 
 /** A direction in the space of the fitted parameters, each in units of its range. */
@@ -84,18 +82,16 @@ typedef struct strut_fit_result {
   strut_fit_estimate *estimates; /* (parameters) alignments first */
   double *correlation;           /* (variables, variables) */
   size_t direction_count;
-  strut_fit_direction *directions; /* that the numbers do not determine */
-  strut_fit_residuals *residuals;  /* (matches) */
-  double *residual,
-      *predicted;  /* (numbers: matches, series, count) at the best, aligned; residuals 0 at gaps */
-  size_t agreeing; /* starts that agree with the best */
+  strut_fit_direction *directions;         /* that the numbers do not determine */
+  strut_fit_residuals *residuals;          /* (matches) */
+  double *residual, *predicted;            /* (numbers) at the best, aligned; residuals 0 at gaps */
+  size_t agreeing;                         /* starts that agree with the best */
   double chi_square, freedom, probability; /* of a sum so large; NAN: the noise is not known */
   double scale;                  /* by which standard errors of unit noise are multiplied */
   const strut_fit_match *coarse; /* whose times are furthest apart for what moves; or NULL */
   double coarseness;             /* 0: not at all */
   const char *reason; /* why the model does not explain the data or starts disagree; or "" */
-  const strut_fit_series
-      *missing; /* the model has no such number, so that nothing is found; or NULL */
+  const strut_fit_series *missing; /* the model has no such number: nothing is found; or NULL */
   strut_arena arena;
 } strut_fit_result;
 
@@ -135,10 +131,9 @@ STRUT_API strut_status strut_fit_write(const strut_fit_result *result, const cha
 typedef struct strut_fit_candidate {
   const char *name;
   size_t numbers;
-  double
-      determinant; /* log10 of that of the information, in units of ranges; -HUGE_VAL: it is singular */
-  double least;   /* singular value of the derivatives, in units of the noise per range */
-  double *errors; /* (variables) standard errors, SI; HUGE_VAL: not determined */
+  double determinant; /* log10 of that of the information, in units of ranges */
+  double least;       /* singular value of the derivatives, in units of the noise per range */
+  double *errors;     /* (variables) standard errors, SI; HUGE_VAL: not determined */
 } strut_fit_candidate;
 
 typedef struct strut_fit_plan {

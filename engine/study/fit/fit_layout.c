@@ -167,11 +167,11 @@ static strut_status make_table(strut_fit_layout *layout, size_t m, strut_error *
 static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
   const strut_sweep_plan *plan = layout->plan;
   strut_setup setup;
-  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  strut_study_value *values =
+      strut_arena_allocate(&layout->arena, plan->axis_columns + 1, sizeof *values);
   if (!values) return strut_no_memory(error, "");
   strut_grid_values(plan->study, 0, values);
   strut_status status = plan->scenes.setup(plan->scenes.context, values, &setup, error);
-  strut_release(values);
   if (status) return status;
   double own = strut_experiment_span(&setup.experiment, &setup.scene).duration;
   for (size_t m = 0; m < layout->fit->match_count && !status; m++) {

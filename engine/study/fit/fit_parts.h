@@ -81,6 +81,7 @@ typedef struct strut_fit_case {
   double *predicted;   /* (count) by the model, not aligned */
   double *latest;      /* (parameters) of that */
   bool known;
+  strut_study_value *values; /* of all columns of the axes */
   double *placing;   /* parameters whose alignments are to be found while the model is predicted */
   bool delays;       /* with their delays */
   int32_t elsewhere; /* this match takes one of the next best, by its rank; -1: none does */
@@ -89,8 +90,7 @@ typedef struct strut_fit_case {
   const strut_fit_series *missing; /* the model has no such number at the latest point; or NULL */
   double *buffer;                  /* (3 count + 3) */
   strut_status status;             /* of what must stop all */
-  strut_error
-      error; /* likewise, or why there were no residuals at the latest point that has none */
+  strut_error error; /* likewise, or why there were no residuals at the latest such point */
   strut_arena arena;
 } strut_fit_case;
 

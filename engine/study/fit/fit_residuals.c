@@ -45,9 +45,8 @@ typedef struct prediction {
   const strut_fit_match *match;
   size_t index; /* of the match */
   alignment align;
-  double delay[2];           /* in which range it is to be found; both 0: it is known */
-  double from, to;           /* times of the samples from which it is found */
-  strut_study_value *values; /* of all columns of the axes */
+  double delay[2]; /* in which range it is to be found; both 0: it is known */
+  double from, to; /* times of the samples from which it is found */
 } prediction;
 
 /* Notes what must stop everything; else the point just has no residuals. */
@@ -295,7 +294,7 @@ static bool predict_scene(prediction *self) {
   strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = scenes->setup(scenes->context, self->values, &setup, &error);
+  strut_status status = scenes->setup(scenes->context, self->one->values, &setup, &error);
   if (status) return settle_status(self->one, status, &error);
   status = strut_equilibrium_cache_resolve(layout->standing, &setup, &error);
   if (!status) status = strut_model_compile(&setup.scene, &model, &error);
@@ -310,7 +309,7 @@ static bool predict_scene(prediction *self) {
 static void give_values(const void *context, int64_t point, strut_study_value *values) {
   const prediction *self = context;
   (void)point;
-  memcpy(values, self->values, self->one->layout->plan->axis_columns * sizeof *values);
+  memcpy(values, self->one->values, self->one->layout->plan->axis_columns * sizeof *values);
 }
 
 /* What a study with the match's `compute` keeps. */
@@ -375,21 +374,18 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   if (one->evaluations >= one->budget * (int64_t)(layout->parameters + 1)) one->spent = true;
   if (one->spent) return one->known = false;
   one->evaluations++;
-  strut_study_value *values = strut_allocate(layout->plan->axis_columns + 1, sizeof *values);
-  one->known = values != NULL;
-  if (!values) one->status = strut_no_memory(&one->error, "");
+  one->known = true;
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
-    prediction p = {.one = one, .match = &fit->matches[m], .index = m, .values = values};
+    prediction p = {.one = one, .match = &fit->matches[m], .index = m};
     p.align = align(layout, m, parameters);
     if ((int32_t)m == one->left_out) continue;
     if (one->placing && one->delays) choose_delays(&p);
-    strut_fit_fill_values(layout, 0, parameters, values);
+    strut_fit_fill_values(layout, 0, parameters, one->values);
     for (size_t k = 0; k < fit->set_count; k++)
-      values[fit->column + fit->variable_count + k] = p.match->values[k];
+      one->values[fit->column + fit->variable_count + k] = p.match->values[k];
     one->known = p.match->kind == STRUT_FIT_TABLE ? predict_table(&p) : predict_scene(&p);
     if (one->known && one->placing) keep_placing(&p);
   }
-  strut_release(values);
   memcpy(one->latest, parameters, layout->parameters * sizeof *parameters);
   return one->known;
 }
@@ -526,7 +522,8 @@ bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) 
   }
   bool fine = STRUT_ALLOCATE(
       &one->arena, STRUT_NEW(one->buffer, most), STRUT_NEW(one->latest, layout->parameters),
-      STRUT_NEW(one->weight, layout->count), STRUT_NEW(one->predicted, layout->count));
+      STRUT_NEW(one->values, layout->plan->axis_columns + 1), STRUT_NEW(one->weight, layout->count),
+      STRUT_NEW(one->predicted, layout->count));
   if (fine) strut_fit_choose(one, 1.0, -1);
   return fine;
 }

@@ -62,10 +62,9 @@ STRUT_API bool strut_least_squares_jacobian(const strut_least_squares *problem,
 /** What a matrix of derivatives says: singular value decomposition and covariance for residuals of variance 1. */
 typedef struct strut_fit_spectrum {
   size_t parameters;
-  double *singular;  /* (parameters) descending */
-  double *direction; /* (parameters, parameters) that of singular value k in row k */
-  double *
-      covariance; /* (parameters, parameters); HUGE_VAL on the diagonal where it is not determined */
+  double *singular;   /* (parameters) descending */
+  double *direction;  /* (parameters, parameters) that of singular value k in row k */
+  double *covariance; /* (parameters, parameters); HUGE_VAL on its diagonal: not determined */
 } strut_fit_spectrum;
 
 /** From the matrix (count, parameters), which is overwritten, in the arena. False: memory is out. */

@@ -205,13 +205,6 @@ static double scale_of(const strut_sweep_plan *plan, const char *name) {
   return 0.0;
 }
 
-/* Warns that derivatives are missing: by a parameter, or, where that is NULL, some of them. */
-static void warn(strut_sweep_job *job, const char *by, const char *why) {
-  strut_sweep_warn(job, "derivatives", "there are no derivatives%s%.60s%s: %.400s",
-                   by ? " by '" : " that need a point beside this one", by ? by : "", by ? "'" : "",
-                   why);
-}
-
 /*
  * Lists the parameters of the job's scene that can be a little less or more, which bounds their range; of others
  * derivatives are not known, or 0 where nothing in this scene uses them.
@@ -236,7 +229,8 @@ static void choose_parameters(derivation *self, strut_sweep_job *job, size_t cou
       place[self->by_count] = i;
       self->by[self->by_count++] = *by;
     } else if (!try_number(plan, values, by, value, &unused)) {
-      warn(job, by->name, why.message);
+      strut_sweep_warn(job, "derivatives", "there are no derivatives by '%.60s': %.400s", by->name,
+                       why.message);
     } else {
       for (size_t j = 0; j < plan->derived_count; j++)
         job->derivatives[j * plan->by_count + i] =
@@ -274,7 +268,10 @@ static strut_status find_derivatives(const strut_sweep_worker *worker, strut_swe
       .errors = errors,
       .threads = worker->options->threads > 0 ? worker->options->threads : strut_sweep_threads()};
   strut_status status = strut_derivatives_find(&task, found, &job->error);
-  if (!status && *job->error.message) warn(job, NULL, job->error.message);
+  if (!status && *job->error.message)
+    strut_sweep_warn(job, "derivatives",
+                     "there are no derivatives that need a point beside this one: %.400s",
+                     job->error.message);
   for (size_t k = 0; k < plan->derived_count * self.by_count && !status; k++)
     job->derivatives[k / self.by_count * plan->by_count + place[k % self.by_count]] = found[k];
   return status;

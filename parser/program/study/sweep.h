@@ -34,7 +34,7 @@ strut_status strut_sweep_study_report(const strut_listener *listener, strut_swee
                                       strut_status status, const strut_error *error);
 /** Reports what is wrong with a number of a fit where the study names it; STRUT_BAD_SCENE. */
 strut_status strut_sweep_refuse_series(strut_sweep_study *study, const strut_fit_series *at,
-                                       const char *why);
+                                       const char *why, const char *hint);
 /** Its settings and options, each before its value; NULL: memory is out. */
 const char *const *strut_sweep_words(const strut_arguments *arguments, strut_arena *arena,
                                      size_t *count);

@@ -116,13 +116,12 @@ static strut_status write_fit(const strut_study_job *job, void *result, strut_er
 static strut_status report_fit(const strut_study_job *job, const void *of, const char *table) {
   const strut_fit_result *result = of;
   (void)table;
-  strut_status status = result->missing
-                            ? strut_sweep_refuse_series(job->study, result->missing, result->reason)
-                            : STRUT_OK;
-  if (status)
-    return strut_sweep_study_report(job->arguments->listener, job->study, status,
-                                    &(strut_error){0});
-  status = job->report(job, &strut_fit_values, result, NULL);
+  if (result->missing)
+    return strut_sweep_study_report(
+        job->arguments->listener, job->study,
+        strut_sweep_refuse_series(job->study, result->missing, result->reason, ""),
+        &(strut_error){0});
+  strut_status status = job->report(job, &strut_fit_values, result, NULL);
   if (status) return status;
   if (!result->found) {
     strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -150,10 +149,10 @@ static strut_status bind_search(strut_sweep_study *study, strut_error *error) {
 }
 
 strut_status strut_sweep_refuse_series(strut_sweep_study *study, const strut_fit_series *at,
-                                       const char *why) {
+                                       const char *why, const char *hint) {
   strut_diagnose(&study->file.diagnostics,
-                 strut_place_at(at->place.line, at->place.column, (uint32_t)strlen(at->of)), "%s",
-                 why);
+                 strut_place_at(at->place.line, at->place.column, (uint32_t)strlen(at->of)), "%s%s",
+                 why, hint);
   return STRUT_BAD_SCENE;
 }
 
@@ -168,14 +167,11 @@ static const char *kept_name(const void *table, size_t i) {
 static strut_status bind_fit(strut_sweep_study *study, strut_error *error) {
   strut_fit_refusal refusal;
   strut_status status = strut_fit_add_columns(&study->plan, &refusal, error);
-  const strut_fit_series *at = refusal.series;
-  const char *near = at ? strut_did_you_mean(at->of, kept_name, &refusal.table) : NULL;
-  if (near) {
-    size_t used = strlen(error->message);
-    snprintf(error->message + used, sizeof error->message - used, "; did you mean '%s'?", near);
+  if (refusal.series) {
+    strut_near near = strut_near_to(refusal.series->of, kept_name, &refusal.table);
+    strut_sweep_refuse_series(study, refusal.series, error->message, near.text);
+    *error = (strut_error){0};
   }
-  if (at) strut_sweep_refuse_series(study, at, error->message);
-  if (at) *error = (strut_error){0};
   strut_sweep_plan_free(&refusal.table);
   return status;
 }
