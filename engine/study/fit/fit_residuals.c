@@ -24,17 +24,12 @@ static const double BETWEEN = 0.382;
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
 
-/* The alignments of a match at the parameters. */
-typedef struct alignment {
-  double number[STRUT_FIT_ALIGNS_COUNT];
-} alignment;
-
-static alignment align(const strut_fit_layout *layout, size_t match, const double *parameters) {
-  alignment a = {{0.0}};
+/* The numbers of a match's alignment at the parameters, which are 0 before. */
+static void find_alignment(const strut_fit_layout *layout, size_t match, const double *parameters,
+                           double align[STRUT_FIT_ALIGNS_COUNT]) {
   for (size_t i = 0; i < layout->aligned_count; i++)
     if (layout->unknowns[i].match == match)
-      a.number[layout->unknowns[i].what] = strut_fit_value(layout, i, parameters[i]);
-  return a;
+      align[layout->unknowns[i].what] = strut_fit_value(layout, i, parameters[i]);
 }
 
 /* ---- predictions ---- */
@@ -44,7 +39,7 @@ typedef struct prediction {
   strut_fit_case *one;
   const strut_fit_match *match;
   size_t index; /* of the match */
-  alignment align;
+  double align[STRUT_FIT_ALIGNS_COUNT];
   double delay[2]; /* in which range it is to be found; both 0: it is known */
   double from, to; /* times of the samples from which it is found */
 } prediction;
@@ -130,7 +125,7 @@ static size_t place_samples(const prediction *self, double *time) {
   for (size_t i = 0; i < count; i++) {
     double later = match->at && i + 1 < count ? match->at[i + 1] - match->at[i] : 0.0;
     double at = match->at ? match->at[i] + self->one->between * later : 0.0;
-    time[i] = match->at ? fmax(at - self->align.number[STRUT_FIT_DELAY], 0.0) : 0.0;
+    time[i] = match->at ? fmax(at - self->align[STRUT_FIT_DELAY], 0.0) : 0.0;
   }
   if (count == 1) time[count++] = time[0];
   time[count - 1] = fmax(time[count - 1], AT_ONCE);
@@ -159,7 +154,7 @@ static const double ALIKE = 0.5;
  * Finds shift and turn of a match for what is predicted of it; returns the sum of squares that they leave. The turn is
  * the best where both coordinates count alike.
  */
-static double place(const strut_fit_case *one, size_t m, alignment *a) {
+static double place(const strut_fit_case *one, size_t m, double align[STRUT_FIT_ALIGNS_COUNT]) {
   const strut_fit_match *match = &one->layout->fit->matches[m];
   const strut_fit_source *sources = one->layout->parts[m].sources;
   const double *from = one->predicted;
@@ -186,13 +181,13 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
         q[j][k] += of[j][k] - (shifts[axis] ? of[j][3] * of[k][3] / of[3][3] : 0.0);
   }
   bool turns = match->align.rotate && sums[0][3][3] > 0.0 && sums[1][3][3] > 0.0;
-  double turn = turns ? atan2(q[1][2], q[0][2]) : a->number[STRUT_FIT_ROTATE], sum = rest;
+  double turn = turns ? atan2(q[1][2], q[0][2]) : align[STRUT_FIT_ROTATE], sum = rest;
   const double by[] = {cos(turn), sin(turn), -1.0};
-  a->number[STRUT_FIT_ROTATE] = turn;
+  align[STRUT_FIT_ROTATE] = turn;
   for (int axis = 0; axis < 2; axis++) {
     double shift = 0.0;
     for (int j = 0; j < 3; j++) shift -= sums[axis][3][j] * by[j];
-    a->number[axis] = shifts[axis] ? shift / sums[axis][3][3] : 0.0;
+    align[axis] = shifts[axis] ? shift / sums[axis][3][3] : 0.0;
   }
   for (int j = 0; j < 3; j++)
     for (int k = 0; k < 3; k++) sum += by[j] * q[j][k] * by[k];
@@ -200,8 +195,7 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
 }
 
 /* The numbers of a match delayed so far, of samples (count, series) at even times, and placed. */
-static double place_delayed(const prediction *self, double delay, const double *sampled,
-                            size_t count, alignment *a) {
+static double place_delayed(prediction *self, double delay, const double *sampled, size_t count) {
   const strut_fit_match *match = self->match;
   size_t n = match->series_count;
   for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
@@ -212,8 +206,8 @@ static double place_delayed(const prediction *self, double delay, const double *
       self->one->predicted[match->series[s].first + i] =
           sampled[k * n + s] + (at - (double)k) * (sampled[(k + 1) * n + s] - sampled[k * n + s]);
   }
-  a->number[STRUT_FIT_DELAY] = delay;
-  return place(self->one, self->index, a);
+  self->align[STRUT_FIT_DELAY] = delay;
+  return place(self->one, self->index, self->align);
 }
 
 /*
@@ -228,8 +222,7 @@ static bool find_delay(prediction *self, const double *sampled, size_t count) {
   size_t ranks = 0, rank = self->one->elsewhere == (int32_t)self->index ? self->one->rank : 0;
   for (size_t j = 0; j <= delays + 1; j++) {
     sum[0] = sum[1], sum[1] = sum[2], sum[2] = HUGE_VAL;
-    if (j <= delays)
-      sum[2] = place_delayed(self, low + step * (double)j, sampled, count, &self->align);
+    if (j <= delays) sum[2] = place_delayed(self, low + step * (double)j, sampled, count);
     if (isfinite(sum[2])) most = fmax(most, sum[2]);
     if (!(sum[1] < sum[0] && sum[1] <= sum[2])) continue;
     double bend = sum[0] - 2.0 * sum[1] + sum[2];
@@ -240,7 +233,7 @@ static bool find_delay(prediction *self, const double *sampled, size_t count) {
     least[r] = sum[1], at[r] = low + step * ((double)j - 1.0 + part);
   }
   if (rank && (rank >= ranks || least[rank] > ALIKE * most)) return false;
-  place_delayed(self, at[rank], sampled, count, &self->align);
+  place_delayed(self, at[rank], sampled, count);
   return true;
 }
 
@@ -335,7 +328,7 @@ static bool predict_table(prediction *self) {
 /* The range of the delay that is to be found: all of it, or of a wide one what is about the present delay. */
 static void choose_delays(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
-  double now = self->align.number[STRUT_FIT_DELAY], span = strut_fit_span(self->match);
+  double now = self->align[STRUT_FIT_DELAY], span = strut_fit_span(self->match);
   for (size_t i = 0; i < layout->aligned_count; i++) {
     if (layout->unknowns[i].match != self->index || layout->unknowns[i].what != STRUT_FIT_DELAY)
       continue;
@@ -350,11 +343,10 @@ static void choose_delays(prediction *self) {
 /* Places a match that has been predicted, with the delay that has been found by then. */
 static void keep_placing(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
-  self->one->placed_sum += place(self->one, self->index, &self->align);
+  self->one->placed_sum += place(self->one, self->index, self->align);
   for (size_t i = 0; i < layout->aligned_count; i++)
     if (layout->unknowns[i].match == self->index)
-      self->one->placing[i] =
-          strut_fit_parameter(layout, i, self->align.number[layout->unknowns[i].what]);
+      self->one->placing[i] = strut_fit_parameter(layout, i, self->align[layout->unknowns[i].what]);
 }
 
 /* Do both have the same runs? Shifts and turns need none. */
@@ -377,7 +369,7 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   one->known = true;
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
     prediction p = {.one = one, .match = &fit->matches[m], .index = m};
-    p.align = align(layout, m, parameters);
+    find_alignment(layout, m, parameters, p.align);
     if ((int32_t)m == one->left_out) continue;
     if (one->placing && one->delays) choose_delays(&p);
     strut_fit_fill_values(layout, 0, parameters, one->values);
@@ -394,16 +386,16 @@ static bool predict(strut_fit_case *one, const double *parameters) {
 
 /* The numbers of a match, turned and shifted. */
 static void align_match(const strut_fit_layout *layout, size_t m, const double *from,
-                        const alignment *a, double *to) {
+                        const double *align, double *to) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  double c = cos(a->number[STRUT_FIT_ROTATE]), s = sin(a->number[STRUT_FIT_ROTATE]);
+  double c = cos(align[STRUT_FIT_ROTATE]), s = sin(align[STRUT_FIT_ROTATE]);
   for (size_t k = 0; k < match->series_count; k++) {
     const strut_fit_source *source = &layout->parts[m].sources[k];
     size_t first = match->series[k].first,
            partner = source->partner < 0 ? k : (size_t)source->partner;
     double across = partner == k ? 0.0 : source->axis ? s : -s, along = partner == k ? 1.0 : c;
     double shift =
-        source->axis < 0 ? 0.0 : a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
+        source->axis < 0 ? 0.0 : align[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
     for (size_t i = 0; i < match->count; i++)
       to[first + i] =
           along * from[first + i] + across * from[match->series[partner].first + i] + shift;
@@ -412,8 +404,9 @@ static void align_match(const strut_fit_layout *layout, size_t m, const double *
 
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to) {
   for (size_t m = 0; m < one->layout->fit->match_count; m++) {
-    alignment a = align(one->layout, m, parameters);
-    align_match(one->layout, m, one->predicted, &a, to);
+    double align[STRUT_FIT_ALIGNS_COUNT] = {0.0};
+    find_alignment(one->layout, m, parameters, align);
+    align_match(one->layout, m, one->predicted, align, to);
   }
 }
 
