@@ -106,8 +106,8 @@ static void show_steady(strut_shown *to, const cJSON *steady, bool checked) {
   const char *within =
       TEXT("%s", strut_quantity_of(number(steady, "velocity_interval"), DIGITS, "m/s").text);
   if (strcmp(kind, "periodic") == 0)
-    within = TEXT("after %.0f periods, every %s repeating%s within %s", periods,
-                  repeats > 1 ? TEXT("%.0f of them", repeats) : "one",
+    within = TEXT("after %.0f periods, repeating every %s%s within %s", periods,
+                  repeats > 1 ? TEXT("%.0f periods", repeats) : "period",
                   checked ? "; velocity known" : "", within);
   else if (strcmp(kind, "transient") == 0)
     within = TEXT("not within %.0f periods", periods);
@@ -119,6 +119,7 @@ static void show_steady(strut_shown *to, const cJSON *steady, bool checked) {
 static void show_cost(strut_shown *to, const cJSON *summary) {
   double seconds = number(summary, "wall_time"), steps = number(summary, "steps");
   double events = number(summary, "events"), evaluations = number(summary, "force_evaluations");
+  show(to, summary, "method", "method", "");
   if (isfinite(steps)) strut_show(to, "steps", TEXT("%.0f", steps));
   show(to, summary, "step", "step", "s");
   if (isfinite(number(summary, "step")))

@@ -111,8 +111,9 @@ typedef struct strut_derived_by {
 /** Start, method, duration and measurements of an experiment. */
 typedef struct strut_experiment {
   const char *integrator; /* name in the table of methods; default "rk4" */
+  bool integrator_named;  /* by the file or an option: strut_experiment_choose_method keeps it */
   double step;            /* dt [s], > 0; of an adaptive method the largest; 0: it is chosen */
-  bool step_chosen;       /* the file gives none: strut_experiment_choose_step did */
+  bool step_chosen;       /* the file gives none: strut_experiment_choose_method did */
   double tolerance;       /* of an adaptive method, relative [1]; default 1e-6 */
   double
       refine; /* factor of shorter steps after a touchdown [1], by methods that refine; 0: taken from the scene; 1: none */
@@ -194,5 +195,9 @@ STRUT_API strut_span strut_experiment_span(const strut_experiment *experiment,
 
 /** Does the method of this name choose its steps, so that a run may leave out the longest one? */
 STRUT_API bool strut_experiment_is_adaptive(const char *integrator);
-/** Sets the longest step of such a method, if missing, to a part of the period or of the run. */
-STRUT_API void strut_experiment_choose_step(strut_experiment *experiment, const strut_scene *scene);
+/**
+ * Without an accuracy: a method that sticks exactly, where none is named and friction does so; the longest step of
+ * a method that chooses its steps, if missing, a part of the period or of the run.
+ */
+STRUT_API void strut_experiment_choose_method(strut_experiment *experiment,
+                                              const strut_scene *scene);

@@ -257,10 +257,13 @@ bool strut_experiment_is_adaptive(const char *integrator) {
   return integrator && steps_per_period(integrator) > 0.0;
 }
 
-void strut_experiment_choose_step(strut_experiment *experiment, const strut_scene *scene) {
-  if (experiment->step != 0.0 || experiment->accuracy > 0.0 ||
-      !strut_experiment_is_adaptive(experiment->integrator))
-    return;
+void strut_experiment_choose_method(strut_experiment *experiment, const strut_scene *scene) {
+  bool usual = !experiment->integrator_named && strcmp(experiment->integrator, "rk4") == 0;
+  if (experiment->accuracy > 0.0) return;
+  for (size_t i = 0; i < scene->contact_count && usual; i++)
+    if (strut_friction_is_exact(scene->contacts[i].friction.law))
+      experiment->integrator = "rk4-events";
+  if (experiment->step != 0.0 || !strut_experiment_is_adaptive(experiment->integrator)) return;
   strut_span span = strut_experiment_span(experiment, scene);
   experiment->step =
       (span.period > 0.0 ? span.period : span.duration) / steps_per_period(experiment->integrator);

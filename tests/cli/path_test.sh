@@ -80,6 +80,7 @@ expect 0 path over.yaml --over top.y --until "-0.5 m" --json
 holds '.unit == "m" and (.events | length) == 0 and ([.points[] | .stable] | all) and
   .points[-1].value == -0.5 and ([.points[] | .reactions.top[1]] | max > 10 and min < -8)'
 shows 0 "moves most  top" path over.yaml --over top.y --until "-0.5 m"
+out_has "  displacement  "
 expect 0 path over.yaml --over left.x --from "1 mm" --until "5 mm" --json
 holds '.points[0].value == 1e-3 and (.points[-1].nodes.left[0] - -0.995 | fabs) < 1e-12'
 expect 0 path over.yaml --over pull --until "-0.2 m" --json

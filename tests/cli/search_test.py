@@ -226,7 +226,8 @@ check("are finished" in run("sweep", "--merge", "one").stdout, "a finished searc
 done = answer("sweep", "one.yaml", "-o", "one", "--status")
 check(done["finished"] and 0 < done["done"] <= done["points"] == 303, f"the status is {done}")
 text = run("sweep", "one.yaml", "-o", "one").stdout
-check("minimise  abs(frequency_1 - 2 Hz)\n" in text and re.search(r" [\d.]+ [nup]?Hz ", text)
+check("minimise  abs(frequency_1 - 2 Hz)\n" in text and re.search(r" [\d.]+ [nup]?Hz\s", text)
+      and re.search(r"beside stiffness +[\d.]+ [mnup]?Hz", text)
       and "searches that agree" in text, f"the report is {text}")
 
 write("words.yaml", read("words.yaml").decode().replace("[low, middle, high]", "{from: 1, to: 2}"))

@@ -45,7 +45,7 @@ class Guesses(unittest.TestCase):
         self.assertEqual(run.position["top"].tolist(), run["position"]["top"].tolist())
         self.assertRaisesRegex(KeyError, r"run.nodes\['top'\]", lambda: run["top.x"])
         self.assertRaisesRegex(KeyError, r"run.members\['muscle'\]", lambda: run["muscle"])
-        for name, said in (("x", "run.nodes"), ("animate", "view"), ("positions", "did you mean 'position'"), ("df", "to_pandas"),
+        for name, said in (("x", "run.nodes"), ("animate", "view"), ("film", "save"), ("positions", "did you mean 'position'"), ("df", "to_pandas"),
                            ("qqq", "^no word in this result 'qqq'; there are [a-z]")):
             self.assertRaisesRegex(AttributeError, said, getattr, run, name)
         with tempfile.TemporaryDirectory() as made:

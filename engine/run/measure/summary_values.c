@@ -48,7 +48,8 @@ STRUT_VALUES_HERE(steady_values, STEADY, const strut_steady_summary *steady = of
 
 #define ACCURACY(X)                                                                                \
   X("wanted", "1", NUMBER(accuracy->wanted), "relative error asked for")                           \
-  X("expected", "1", NUMBER(accuracy->expected), "of the velocity; null: not known")               \
+  X("expected", "1", NUMBER(accuracy->expected),                                                   \
+    "relative error to expect of the velocity; null: not known")                                   \
   X("kept", "1", FLAG(accuracy->kept), "whether it is within what was asked for")                  \
   X("scale", "m/s", NUMBER(accuracy->scale), "velocity below which errors are not relative")       \
   X("why", "", TEXT(accuracy->why), "method, step and reason")                                     \
@@ -142,7 +143,7 @@ static void write_note(const strut_result_object *of, char text[STRUT_VALUE_ROOM
   X("member", "", IF(m->member, TEXT(m->member)), "that has the largest force")                    \
   X("arrival", "", IF(strut_measured_arrival(m), TEXT(strut_measured_arrival(m))),                 \
     "reached, never, or not decided")                                                              \
-  X("expected", "", IF(isfinite(m->expected), NUMBER(m->expected)), "error")                       \
+  X("expected", "", IF(isfinite(m->expected), NUMBER(m->expected)), "error to expect, SI")         \
   X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)),                            \
     "within what was asked for")                                                                   \
   X("note", "", WORDS(write_note), "what else is known, in words", .label = {""})

@@ -13,7 +13,8 @@ static bool is_held(const strut_result_object *of, size_t k) {
 /* The parameter of the path around: a load's factor and what it is in newtons, or a value. */
 #define PARAMETER(X, FACTOR)                                                                       \
   X("factor", "1", IF(over_load(path), NUMBER(FACTOR)), "factor of the loads")                     \
-  X("value", "", IF(!over_load(path), NUMBER(FACTOR)), "the parameter, in its SI unit")            \
+  X("value", "", IF(!over_load(path), NUMBER(FACTOR)),                                             \
+    "the parameter, in its SI unit; of NODE.x and NODE.y the displacement")                        \
   X("force", "N", IF(over_load(path) && path->reference > 0, NUMBER((FACTOR)*path->reference)),    \
     "the load, where all are alike")
 
@@ -57,7 +58,8 @@ STRUT_VALUES_HERE(event_values, EVENT, const strut_path_event *event = of->at)
 
 #define WALK(X)                                                                                    \
   X("load", "", TEXT(walk->load), "name of the load; null: all loads without a signal")            \
-  X("over", "", TEXT(over_load(walk) ? NULL : walk->name), "the parameter; null: a load's factor") \
+  X("over", "", TEXT(over_load(walk) ? NULL : walk->name),                                         \
+    "the parameter, or the node displaced; null: a load's factor")                                 \
   X("unit", "", TEXT(walk->unit), "SI unit of the parameter")                                      \
   X("end", "", TEXT(strut_path_end_word(walk->end)), "why it ended")                               \
   X("remark", "", TEXT(walk->remark[0] ? walk->remark : NULL),                                     \
@@ -114,9 +116,12 @@ static const char *stability_of(const strut_path *path) {
   return stable == path->point_count ? "stable" : stable ? "stable in part" : "unstable";
 }
 
+static const char *parameter_of(const strut_path *path) {
+  return over_load(path) ? "factor" : path->coordinate >= 0 ? "displacement" : path->name;
+}
+
 #define FACTOR(X, STATE)                                                                           \
-  X(NULL, "",                                                                                      \
-    ROUNDED(8, CALLED(over_load(path) ? "factor" : path->name, path->unit, (STATE)->factor)), "",  \
+  X(NULL, "", ROUNDED(8, CALLED(parameter_of(path), path->unit, (STATE)->factor)), "",             \
     .label = {""})
 #define SHOWN(X, STATE)                                                                            \
   FACTOR(X, STATE)                                                                                 \

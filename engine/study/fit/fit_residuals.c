@@ -104,7 +104,7 @@ static void prepare_run(const strut_model *model, double duration, strut_experim
   }
   experiment->tolerance = fmin(experiment->tolerance, TOLERANCE);
   if (experiment->step > duration) experiment->step = 0.0;
-  strut_experiment_choose_step(experiment, model->scene);
+  strut_experiment_choose_method(experiment, model->scene);
 }
 
 /* Even times that cover all delays. */

@@ -220,7 +220,9 @@ static strut_value bound_of(const strut_result_object *of, size_t i) {
 
 static strut_value neighbours_of(const strut_result_object *of, size_t i) {
   const strut_search_neighbour *near = ((const strut_search_worth *)of->at)->neighbours[i];
-  return STRUT_VALUE_AS_OF_STRUCTS(&near->point.objective, 2, sizeof *near);
+  strut_value both = STRUT_VALUE_AS_OF_STRUCTS(&near->point.objective, 2, sizeof *near);
+  both.own_unit = goal_unit(search_of(of)->goal);
+  return both;
 }
 
 #define WORTH(X)                                                                                   \

@@ -149,7 +149,7 @@ static bool make_exact(strut_experiment *experiment, const strut_scene *scene) {
   if (!adaptive) {
     experiment->integrator = "adaptive";
     experiment->step = 0.0;
-    strut_experiment_choose_step(experiment, scene);
+    strut_experiment_choose_method(experiment, scene);
   }
   experiment->tolerance = adaptive ? fmin(experiment->tolerance, TIGHT) : TIGHT;
   return exact;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/language/expression/expression_parts.h"
 #include "parser/language/read/reader.h"
 #include "parser/language/read/reuse/copies.h"
@@ -74,14 +75,15 @@ static bool evaluate_set(strut_reader *reader, strut_parameter_state *parameters
 }
 
 /* Notes that a number without unit is in SI units, where it differs from the declared value by more
-   than a factor of 100: then a unit was probably forgotten. */
+   than a factor of 100, or is an angle above 45 deg: then a unit was probably forgotten. */
 static void note_scale(strut_reader *reader, const strut_parameter_state *parameters,
                        const strut_quantity *declared) {
   double times = fabs(parameters->quantity.value / declared->value);
   const char *unit = strut_unit_of_text(parameters->value->text, NULL).name;
   const char *given = parameters->set->text;
-  if (parameters->set->place.line || !(times > 100.0 * (1.0 + 1e-9) || times < 0.01 * (1.0 - 1e-9)))
-    return;
+  bool wide = unit && strcmp(unit, "deg") == 0 && fabs(parameters->quantity.value) > STRUT_TAU / 8;
+  bool far = times > 100.0 * (1.0 + 1e-9) || times < 0.01 * (1.0 - 1e-9);
+  if (parameters->set->place.line || !(far || wide)) return;
   if (declared->value == 0.0 || parameters->quantity.value == 0.0) return;
   strut_note(reader->diagnostics, parameters->value->place,
              "--set %s=%s is taken as %s in SI units, %.6g times the %s here, since a plain number "

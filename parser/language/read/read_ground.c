@@ -501,6 +501,17 @@ static void check_belt(strut_reader *reader, const strut_slot *belt, const conta
                        "'belt_speed' has no meaning without 'friction' of a contact");
 }
 
+/* A plain number above 45 deg is in radians, and probably meant in degrees. */
+static void note_steep(strut_reader *reader, const strut_slot *slope) {
+  const char *text = slope->state == STRUT_GIVEN ? slope->value->text : "";
+  if (!*text || text[strut_number_scan(text, strlen(text))] ||
+      !(fabs(slope->number[0]) > STRUT_TAU / 8))
+    return;
+  strut_note(reader->diagnostics, slope->value->place,
+             "a slope of %s is taken as %s rad, %.6g deg; write '%s deg' if that is meant", text,
+             text, slope->number[0] * 360.0 / STRUT_TAU, text);
+}
+
 static void read_one(strut_reader *reader, strut_fields *fields, strut_place place,
                      strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, place);
@@ -508,6 +519,7 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_place pla
   if (!strut_store(reader, fields, &section) || !shape_is_alone(reader, fields) ||
       !read_normal(reader, fields, &section))
     fields->broken = true;
+  note_steep(reader, strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE));
   *ground = section.ground;
   ground_defaults defaults = read_defaults(reader, fields, &section.contact);
   bool line = ground->shape == STRUT_GROUND_LINE;

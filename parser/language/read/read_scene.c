@@ -166,7 +166,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   strut_name_map_free(
       &reader->things[STRUT_THING_NODE].names); /* the check makes such tables of its own */
   strut_name_map_free(&reader->things[STRUT_THING_MEMBER].names);
-  strut_experiment_choose_step(&reader->setup->experiment, &reader->setup->scene);
+  strut_experiment_choose_method(&reader->setup->experiment, &reader->setup->scene);
   if (strut_setup_check(reader->setup, reader->purpose, &findings) == STRUT_NO_MEMORY)
     reader->out_of_memory = true;
   strut_place_findings(reader, &findings);

@@ -54,8 +54,10 @@ const strut_option strut_experiment_options[] = {
 
 static strut_status apply_settings(const strut_arguments *arguments, strut_experiment *experiment) {
   bool by_hand = arguments->integrator.text || arguments->step.text;
-  if (arguments->integrator.text)
+  if (arguments->integrator.text) {
     experiment->integrator = strut_integrator_find(arguments->integrator.text)->name;
+    experiment->integrator_named = true;
+  }
   if (arguments->accuracy.text)
     experiment->accuracy = arguments->accuracy.value, experiment->accuracy_assumed = false;
   if (arguments->step.text) experiment->step = arguments->step.value;
@@ -133,16 +135,8 @@ strut_purpose strut_run_options_purpose(const strut_arguments *arguments) {
   return later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
 }
 
-/* With a step of its own, a run whose file names no method gets one that sticks exactly where a law does. */
-static void choose_method(strut_experiment *experiment, const strut_scene *scene) {
-  for (size_t i = 0; i < scene->contact_count && !(experiment->accuracy > 0.0); i++)
-    if (strut_friction_is_exact(scene->contacts[i].friction.law))
-      experiment->integrator = strut_integrator_for(STRUT_ROLE_EXACT_STICK)->name;
-}
-
 strut_status strut_run_options_apply(const strut_arguments *arguments, strut_setup *setup) {
   strut_scene *scene = &setup->scene;
-  bool unnamed = setup->experiment.accuracy > 0.0 && !arguments->integrator.text;
   strut_status status = apply_settings(arguments, &setup->experiment);
   if (status) return status;
   if (arguments->bars.text) scene->bar_model = (strut_bar_model)arguments->bars.index;
@@ -151,8 +145,7 @@ strut_status strut_run_options_apply(const strut_arguments *arguments, strut_set
     status = set_friction(arguments, scene, (strut_friction_law)arguments->friction_law.index);
   if (!status && arguments->damping_law.text)
     status = set_damping(arguments, scene, (strut_ground_damping)arguments->damping_law.index);
-  if (!status && unnamed) choose_method(&setup->experiment, scene);
-  if (!status) strut_experiment_choose_step(&setup->experiment, scene);
+  if (!status) strut_experiment_choose_method(&setup->experiment, scene);
   return status;
 }
 
