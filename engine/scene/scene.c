@@ -59,6 +59,25 @@ void strut_scene_stop_unbalances(strut_scene *scene) {
   scene->unbalance_count = 0;
 }
 
+/* The i-th of all masses; NULL after the last. */
+static double *mass_at(const strut_scene *scene, size_t i) {
+  if (i < scene->node_count) return &scene->nodes[i].mass;
+  if ((i -= scene->node_count) < scene->member_count) return &scene->members[i].mass;
+  if ((i -= scene->member_count) < scene->sliding_count) return &scene->sliding_masses[i].mass;
+  if ((i -= scene->sliding_count) < scene->unbalance_count) return &scene->unbalances[i].mass;
+  return NULL;
+}
+
+double strut_scene_mass(const strut_scene *scene) {
+  double sum = 0.0;
+  for (size_t i = 0; mass_at(scene, i); i++) sum += *mass_at(scene, i);
+  return sum;
+}
+
+void strut_scene_scale_masses(strut_scene *scene, double factor) {
+  for (size_t i = 0; mass_at(scene, i); i++) *mass_at(scene, i) *= factor;
+}
+
 /* Twice the area of the triangle about guide k, counter-clockwise: the next node is to the left. */
 static double turn_at(const strut_scene *scene, const strut_member *member, size_t k) {
   const double *a = scene->nodes[strut_member_node(member, k - 1)].position,

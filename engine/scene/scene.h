@@ -415,6 +415,10 @@ STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
 
 /** Stops rotating masses: each becomes part of its node's mass. The nodes must be the scene's own. */
 STRUT_API void strut_scene_stop_unbalances(strut_scene *scene);
+/** The mass of all nodes, members, sliders and rotating masses [kg]. */
+STRUT_API double strut_scene_mass(const strut_scene *scene);
+/** Multiplies all masses by that factor. */
+STRUT_API void strut_scene_scale_masses(strut_scene *scene, double factor);
 /** Share of its member at which a sliding mass is at time t [s]. */
 STRUT_API double strut_sliding_mass_share(const strut_scene *scene, size_t index, double t);
 /** The rate of that share [1/s]. */

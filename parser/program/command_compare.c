@@ -178,6 +178,17 @@ static strut_status check_settings(const strut_arguments *arguments,
   return STRUT_OK;
 }
 
+/* Gives all models the mass of --mass. */
+static strut_status scale_masses(const strut_arguments *arguments, compared_models *compared) {
+  for (size_t i = 0; i < compared->count && arguments->mass.text; i++) {
+    double mass = strut_scene_mass(&compared->setups[i].scene);
+    if (!(mass > 0.0))
+      return strut_usage_error(arguments, "--mass: '%s' has no mass", compared->inputs[i].label);
+    strut_scene_scale_masses(&compared->setups[i].scene, arguments->mass.value / mass);
+  }
+  return STRUT_OK;
+}
+
 /* Runs before starts are resolved, so that scenes are compared as written. */
 static strut_status find_differences(compared_models *compared) {
   strut_status status = STRUT_OK;
@@ -229,6 +240,7 @@ static strut_status open_compared(strut_analysis *analysis, char **text) {
     if (status == STRUT_OK || here == STRUT_NO_MEMORY) status = here;
   }
   if (status == STRUT_OK) status = check_settings(arguments, compared);
+  if (status == STRUT_OK) status = scale_masses(arguments, compared);
   return status ? status : find_differences(compared);
 }
 
@@ -246,6 +258,8 @@ static void free_compared(strut_analysis *analysis) {
 static const strut_option options[] = {
     {STRUT_FILLS(overrides), "set", "NAME=VALUE",
      "change a parameter of all models that have it; after a MODEL, of that one"},
+    {STRUT_FILLS(mass), "mass", "MASS", "scale the masses of each model to this sum, such as 200g",
+     .measure = STRUT_MEASURE_MASS, STRUT_ABOVE_ZERO},
     {STRUT_FILLS(accuracy), "accuracy", "X",
      "relative accuracy of velocities, such as 1% (default " STRUT_TEXT_OF(
          STRUT_COMPARE_USUAL_PERCENT) "%)",

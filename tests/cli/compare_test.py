@@ -51,8 +51,7 @@ def check_rigidity(path, v):
 def check_states(path, model):
     reported, v = answer("equilibria", path), model["values"]
     stands = {e["name"]: e["energy"] for e in reported["equilibria"] if e["outcome"] == "stands"}
-    if {s["name"]: s["energy"] for s in model["states"]} != stands:
-        fail(f"{path}: states {model['states']}, not {stands}")
+    check({s["name"]: s["energy"] for s in model["states"]} == stands, f"{path}: states {model['states']}, not {stands}")
     energies = [s["energy"] for s in model["states"]]
     check(energies == sorted(energies), f"{path}: states are not in the order of their energy")
     same(f"{path}: number of states", v["stable_states"], len(stands))
@@ -213,12 +212,15 @@ if reported != {"parameters.unlike": ("removed", "1", None),
             "members.ab.stiffness": ("changed", "100", "200"),
             "members.ac": ("added", None, "{nodes: [a, b], kind: cable, stiffness: 1, " "rest_length_ratio: 1}")}:
     fail(f"differences: {reported}")
-if found["models"][2]["differences"] or found["models"][2]["model"] != "one.yaml":
-    fail("the same model twice has differences, or no label of its own")
+check(not found["models"][2]["differences"] and found["models"][2]["model"] == "one.yaml", "a model against itself")
 check("differences" not in found["models"][0], "the first differs from itself")
 # stiffer by a factor: a spring from a wall, whose stiffness along it is its own
 same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
 check(found["models"][0]["reasons"].get("stiffness_y") is not None, "a spring without tension resists across")
+for whole, at in zip(answer("compare", SQUARE, TWO, "--no-states", "--no-motion")["models"],
+                     answer("compare", SQUARE, TWO, "--no-states", "--no-motion", "--mass", "500 g")["models"]):
+    faster = math.sqrt(whole["values"]["mass"] / 0.5)  # by the formula, where no weight stiffens
+    same("frequency at equal mass", at["values"]["frequency_1"], whole["values"]["frequency_1"] * faster, 1e-6)
 out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
 for line in ("two: against the first", "members.ac +added", "parameters.unlike +removed",
              "members.ab.stiffness +changed +100 +200"):
@@ -227,8 +229,7 @@ for line in ("two: against the first", "members.ac +added", "parameters.unlike +
 # ---- files ----
 run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
 names = sorted(files_in("kept"))
-if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg", "model-3.svg"]:
-    fail(f"files: {names}")
+check(names == ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg", "model-3.svg"], names)
 for name in names:
     if name.endswith(".svg"):
         tree.parse(f"kept/{name}")

@@ -63,14 +63,6 @@ static double count_members(const facts *f, strut_member_kind kind) {
   return count;
 }
 
-static double total_mass(const strut_scene *scene) {
-  double mass = 0.0;
-  for (size_t i = 0; i < scene->node_count; i++) mass += scene->nodes[i].mass;
-  for (size_t j = 0; j < scene->member_count; j++) mass += scene->members[j].mass;
-  for (size_t i = 0; i < scene->sliding_count; i++) mass += scene->sliding_masses[i].mass;
-  return mass;
-}
-
 static double free_coordinates(const strut_scene *scene) {
   double count = 0.0;
   for (size_t i = 0; i < scene->node_count; i++)
@@ -158,7 +150,7 @@ static double least_stiffness(const strut_compare_column *c, int axis) {
 }
 
 static double weight(const strut_scene *scene) {
-  return total_mass(scene) * hypot(scene->gravity[0], scene->gravity[1]);
+  return strut_scene_mass(scene) * hypot(scene->gravity[0], scene->gravity[1]);
 }
 
 static double cost_of_transport(const facts *f) {

@@ -31,7 +31,7 @@ enum { STRUT_COMPARE_MOST = 100 };
   X(CABLES, "cables", "", STRUCTURE, count_members(f, STRUT_CABLE), NULL)                          \
   X(CONTACTS, "contacts", "", STRUCTURE, (double)f->scene->contact_count, NULL)                    \
   X(ACTUATORS, "actuators", "", STRUCTURE, (double)f->scene->actuator_count, NULL)                 \
-  X(MASS, "mass", "kg", STRUCTURE, total_mass(f->scene), NULL)                                     \
+  X(MASS, "mass", "kg", STRUCTURE, strut_scene_mass(f->scene), NULL)                               \
   X(FREEDOMS, "degrees_of_freedom", "", STRUCTURE, free_coordinates(f->scene), NULL)               \
   X(SELF_STRESSES, "self_stress_states", "", RIGIDITY, f->rigidity.states.count, NULL)             \
   /* all that stretch no member but rigid-body motions */                                          \

@@ -97,7 +97,7 @@ typedef struct strut_arguments {
   strut_given_word format;
   strut_given_words channels;
   strut_given_range over, and_over;
-  strut_given_number accuracy, budget, step, tolerance, steady, speed, fps, periods, cpu_time;
+  strut_given_number accuracy, budget, step, tolerance, steady, speed, fps, periods, cpu_time, mass;
   strut_given_number least_tension, least_density, limit_time;
   strut_given_whole count, starts, seed, steps, branches, points, step_sizes, threads, shards, cpus;
   strut_given_whole lowest, limit_evaluations;
