@@ -24,8 +24,6 @@ typedef struct compared_models {
   strut_compare result;
 } compared_models;
 
-enum { MOST_MESSAGES = 50 };
-
 /* A model being read. */
 typedef struct model_source {
   const char *path, *shown;
@@ -90,11 +88,7 @@ static strut_status read_setup(compared_models *compared, const model_source *fr
   strut_diagnostics diagnostics = {0};
   strut_status status = strut_setup_read(setup, from->shown, from->text, from->length, overrides,
                                          count, STRUT_FOR_ANY, &diagnostics);
-  if (status == STRUT_BAD_SCENE) {
-    const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
-    if (messages) fputs(messages, stderr);
-    if (!messages) status = STRUT_NO_MEMORY;
-  }
+  status = strut_print_found(&diagnostics, status, true, setup);
   if (status == STRUT_OK && !print_notes(compared, &diagnostics)) {
     strut_setup_free(setup);
     status = STRUT_NO_MEMORY;

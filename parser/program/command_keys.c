@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What comes with the program: the language as a page and as a schema (`strut keys`), models (`strut examples`); `strut export`. */
-#include <errno.h>
 #include <glob.h>
 #include <stdio.h>
 #include <string.h>
@@ -215,16 +214,9 @@ static strut_status print_model(const char *path, size_t root, strut_error *erro
 }
 
 /* A file that exists stays as it is. */
-static strut_status create_file(const char *path, const char *text, size_t length,
-                                strut_error *error) {
-  FILE *file = fopen(path, "wx");
-  int code = !file || fwrite(text, 1, length, file) != length ? errno : 0;
-  if (file && fclose(file) != 0 && !code) code = errno;
-  if (!code) return STRUT_OK;
-  if (file) unlink(path);
-  if (code == EEXIST)
-    return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' exists already, and is left as it is", path);
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': %s", path, strerror(code));
+static strut_status create_file(const char *path, const char *text, strut_error *error) {
+  if (access(path, F_OK) != 0) return strut_file_write_path(path, text, error);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' exists already, and is left as it is", path);
 }
 
 /* Copies a model, and those that it names: the model of a study, the base of a scene. */
@@ -239,7 +231,7 @@ static strut_status copy_model(const strut_arguments *arguments, const char *pat
   if (status != STRUT_OK) return status;
   snprintf(copy, sizeof copy, "%s%s%s", directory ? directory : "", directory ? "/" : "", base);
   bool same = strut_file_read(copy, &there, &size, &unused) == STRUT_OK && strcmp(there, text) == 0;
-  if (!same) status = create_file(copy, text, length, error);
+  if (!same) status = create_file(copy, text, error);
   if (!same && status == STRUT_OK && !arguments->quiet) printf("%s\n", copy);
   for (size_t k = 0; k < sizeof keys / sizeof keys[0] && status == STRUT_OK; k++) {
     find_key(text, keys[k], name);

@@ -2,6 +2,7 @@
 #include "parser/program/commands.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
@@ -54,7 +55,7 @@ enum { MOST_AT = 8, MOST_STARTS = 64 };
 /* Scenes over the parameter, and the options that refer to them. Must not move. */
 typedef struct follow_source {
   strut_varied_scenes scenes;
-  char from[1024]; /* names of configurations, each ended by NUL */
+  char from[1024]; /* names of configurations */
   strut_follow_start starts[MOST_STARTS];
 } follow_source;
 
@@ -165,22 +166,14 @@ static strut_status read_values(const strut_arguments *arguments, const strut_sc
                            wanted->name);
 }
 
-/* Names of --at into source->from; returns how many, 0 where there are none. */
+/* Names of --at, in source->from; returns how many, 0 where there are none. */
 static size_t read_names(const strut_arguments *arguments, follow_source *source,
                          const char *names[MOST_STARTS]) {
-  const char *from = arguments->at;
-  size_t count = 0, used = 0;
-  while (from && *from && count < MOST_STARTS / MOST_AT) {
-    while (*from == ' ') from++;
-    size_t length = strcspn(from, ","), kept = length;
-    while (kept > 0 && from[kept - 1] == ' ') kept--;
-    if (used + kept + 1 > sizeof source->from) break;
-    memcpy(source->from + used, from, kept);
-    source->from[used + kept] = '\0';
-    names[count++] = source->from + used;
-    used += kept + 1;
-    from += length + (from[length] == ',');
-  }
+  size_t count = 0;
+  char *rest = source->from, *name;
+  snprintf(source->from, sizeof source->from, "%s", arguments->at ? arguments->at : "");
+  while (count < MOST_STARTS / MOST_AT && (name = strtok_r(rest, ", ", &rest)))
+    names[count++] = name;
   return count;
 }
 

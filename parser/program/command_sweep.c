@@ -89,8 +89,7 @@ static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   if (getcwd(folder, PATH_MAX)) return STRUT_OK;
   strut_error error = {0};
   strut_fail(&error, STRUT_FILE_TROUBLE, "the current directory has no name: %s", strerror(errno));
-  strut_print_error(&error);
-  return STRUT_FILE_TROUBLE;
+  return strut_print_failure(STRUT_FILE_TROUBLE, &error);
 }
 
 /* Prints the script for a cluster. */
@@ -175,12 +174,10 @@ static void format_row(const strut_sweep_plan *plan, const strut_result_slot *ro
   *text = '\0';
   for (size_t i = 0; i < plan->column_count && i < most && used < size; i++) {
     const strut_slot_column *column = &plan->columns[i];
-    const char *unit = strcmp(column->unit, "1") == 0 ? "" : column->unit;
-    int n = column->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "",
-                                    column->name, row->words[word++])
-                         : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "",
-                                    column->name, row->numbers[number++], *unit ? " " : "", unit);
-    used += n > 0 ? (size_t)n : 0;
+    used += (size_t)snprintf(
+        text + used, size - used, "%s%s %s", i ? ", " : "", column->name,
+        column->word ? row->words[word++]
+                     : strut_quantity_of_any(row->numbers[number++], 4, column->unit).text);
   }
   if (row->status != STRUT_OK && used < size)
     snprintf(text + used, size - used, ": %s", strut_status_text(row->status));
@@ -260,11 +257,11 @@ static strut_status show_plan(const strut_arguments *arguments, const strut_swee
 }
 
 /* --plot: the first result over the first axis, a curve for each value of the second, or as a map of both. */
-static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study,
+static strut_status plot_table(const strut_arguments *arguments, strut_sweep_study *study,
                                const strut_plot *plot) {
   const strut_sweep_plan *plan = &study->plan;
   const strut_slot_column *columns = plan->columns;
-  char path[PATH_MAX];
+  const char *path = strut_arena_format(&study->plan.arena, "%s/%s", arguments->output, table_name);
   strut_table table = {0};
   strut_error error = {0};
   size_t axes = plan->axis_columns, result = axes;
@@ -272,8 +269,7 @@ static strut_status plot_table(const strut_arguments *arguments, const strut_swe
   while (result < plan->column_count && columns[result].word) result++;
   if (result == plan->column_count || axes == 0)
     return strut_usage_error(arguments, "--plot needs a number among the results, and an axis");
-  if (snprintf(path, sizeof path, "%s/%s", arguments->output, table_name) >= (int)sizeof path)
-    return strut_usage_error(arguments, "the path of the table is too long");
+  if (!path) return strut_print_out_of_memory();
   const strut_study_figure figure = {.kind = map ? STRUT_FIGURE_MAP : STRUT_FIGURE_LINES,
                                      .x = columns[0].name,
                                      .y = columns[map ? 1 : result].name,

@@ -73,12 +73,7 @@ const strut_command *strut_command_find(const char *name) {
 
 /* Prints the help of the whole program on stdout. */
 static void print_program_help(void) {
-  int width = 0;
   const char *group = "";
-  for (size_t i = 0; i < COMMANDS; i++) {
-    int length = (int)strlen(rows[i].command->name);
-    if (length > width) width = length;
-  }
   printf(
       "strut %s: planar structures of bars, springs and cables, described in YAML\n\n"
       "Usage: strut COMMAND [OPTION]... [MODEL]\n   or: strut MODEL [OPTION]...\n",
@@ -86,7 +81,7 @@ static void print_program_help(void) {
   for (size_t i = 0; i < COMMANDS; i++) {
     if (strcmp(rows[i].group, group) != 0) printf("\n%s:\n", rows[i].group);
     group = rows[i].group;
-    printf("  %-*s  %s\n", width, rows[i].command->name, rows[i].command->summary);
+    printf("  %-10s  %s\n", rows[i].command->name, rows[i].command->summary);
   }
   printf(
       "\n'strut help COMMAND' explains a command, 'strut keys KEY' a key of the language.\n"
@@ -384,8 +379,7 @@ static void print_option(const strut_option *option) {
 }
 
 void strut_command_help(const strut_command *command) {
-  printf("Usage: strut %s", command->name);
-  printf(" [OPTION]...");
+  printf("Usage: strut %s [OPTION]...", command->name);
   if (command->model) printf(command->model_optional ? " [%s]" : " %s", command->model);
   if (command->model_optional && command->many) printf("...");
   printf("\n\nstrut %s: %s.\n", command->name, command->summary);

@@ -193,6 +193,9 @@ typedef struct strut_open_report {
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_setup *setup, strut_open_report *report);
 void strut_open_report_free(strut_open_report *report);
+/** Prints messages, and the notes unless they are printed already; on failure nothing is left of the setup. */
+strut_status strut_print_found(strut_diagnostics *diagnostics, strut_status status, bool noted,
+                               strut_setup *setup);
 
 /**
  * The scene as short as the file gave it, see strut_short_write; `text` is the file's, `before` the scene

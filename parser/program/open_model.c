@@ -30,9 +30,8 @@ const char *strut_model_name(const strut_arguments *arguments) {
   return strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
 }
 
-/* Prints what was found; on failure nothing is left of the setup. */
-static strut_status print_found(strut_diagnostics *diagnostics, strut_status status, bool noted,
-                                strut_setup *setup) {
+strut_status strut_print_found(strut_diagnostics *diagnostics, strut_status status, bool noted,
+                               strut_setup *setup) {
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(diagnostics, MOST_MESSAGES);
     if (messages) fputs(messages, stderr);
@@ -63,7 +62,7 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
   status = strut_setup_read(setup, strut_model_name(arguments), to->text, to->length,
                             arguments->overrides, arguments->override_count, purposes[purpose],
                             &to->diagnostics);
-  if (to->prints) status = print_found(&to->diagnostics, status, arguments->no_notes, setup);
+  if (to->prints) status = strut_print_found(&to->diagnostics, status, arguments->no_notes, setup);
   if (status == STRUT_NO_MEMORY) strut_print_out_of_memory();
   if (status == STRUT_OK && purpose <= STRUT_OPEN_AS_RUN) {
     status = strut_resolve_start_equilibrium(setup, &to->error);

@@ -152,9 +152,7 @@ strut_status strut_print_failure(strut_status status, const strut_error *error) 
 }
 
 strut_status strut_print_out_of_memory(void) {
-  strut_error error = {STRUT_NO_MEMORY, ""};
-  strut_print_error(&error);
-  return STRUT_NO_MEMORY;
+  return strut_print_failure(STRUT_NO_MEMORY, &(strut_error){STRUT_NO_MEMORY, ""});
 }
 
 static void show_message(void *context, strut_message_kind kind, const char *command,
@@ -291,9 +289,6 @@ void strut_progress_show(void *context, double fraction) {
     strut_duration_text(elapsed, left);
     length = snprintf(text, sizeof text, " %s: %.0f %%, %s so far%s", progress->phase, percent,
                       left, run_left);
-    if (progress->columns - 1 - length < LEAST)
-      length =
-          snprintf(text, sizeof text, " %s: %.0f %%, %s so far", progress->phase, percent, left);
   } else {
     length = snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
   }

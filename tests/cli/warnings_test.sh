@@ -125,7 +125,7 @@ out_has '"caveat":	"fixed steps of rk4 pass over changes between sticking and sl
 shows 0 ' not known: fixed steps of rk4 pass over changes between sticking and slipping; --accuracy 1%' run slide.yaml
 grep -q '^  accuracy  *not known: fixed steps' out || fail "the remark has no label 'accuracy'"
 finds '.method == "rk4-events"' run slide.yaml --friction-law coulomb
-edit 's/^ground: {/&slope: 1, /' slide.yaml tells 0 "note: a slope of 1 is taken as 1 rad, 57.2958 deg; write '1 deg'" check
+edit 's/^ground: {/&slope: 1, /' slide.yaml tells 0 "note: a slope of 1 is in radians, 57.2958 deg; write '1 deg'" check
 for method in "--integrator rk4-events" "--accuracy 1%"; do
   shows 0 '"caveat":	null' run slide.yaml --json $method
 done

@@ -152,12 +152,6 @@ static double count_freedoms(const strut_model *model) {
   return count;
 }
 
-static double total_mass(const strut_model *model) {
-  double mass = 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) mass += model->weight[i];
-  return mass;
-}
-
 /* ---- the columns ---- */
 
 typedef enum column_shape {
@@ -175,7 +169,7 @@ typedef enum column_shape {
   X(COUNT, NODES, "node_count", "1", NUMBER, (double)model->scene->node_count)                     \
   X(COUNT, MEMBERS, "member_count", "1", NUMBER, (double)model->scene->member_count)               \
   X(COUNT, FREEDOMS, "degrees_of_freedom", "1", NUMBER, count_freedoms(model))                     \
-  X(COUNT, TOTAL_MASS, "total_mass", "kg", NUMBER, total_mass(model))                              \
+  X(COUNT, TOTAL_MASS, "total_mass", "kg", NUMBER, strut_scene_mass(model->scene))                 \
   X(RUN, VELOCITY, "velocity", "m/s", NUMBER, found(result, "velocity"))                           \
   X(RUN, SPREAD, "velocity_spread", "m/s", NUMBER, found(result, "velocity_spread"))               \
   X(RUN, INTERVAL, "velocity_interval", "m/s", NUMBER, found(result, "steady.velocity_interval"))  \

@@ -503,13 +503,12 @@ static void check_belt(strut_reader *reader, const strut_slot *belt, const conta
 
 /* A plain number above 45 deg is in radians, and probably meant in degrees. */
 static void note_steep(strut_reader *reader, const strut_slot *slope) {
-  const char *text = slope->state == STRUT_GIVEN ? slope->value->text : "";
-  if (!*text || text[strut_number_scan(text, strlen(text))] ||
-      !(fabs(slope->number[0]) > STRUT_TAU / 8))
-    return;
-  strut_note(reader->diagnostics, slope->value->place,
-             "a slope of %s is taken as %s rad, %.6g deg; write '%s deg' if that is meant", text,
-             text, slope->number[0] * 360.0 / STRUT_TAU, text);
+  if (slope->state != STRUT_GIVEN || !(fabs(slope->number[0]) > STRUT_TAU / 8)) return;
+  const char *text = slope->value->text;
+  if (strut_number_scan(text, strlen(text)) == strlen(text))
+    strut_note(reader->diagnostics, slope->value->place,
+               "a slope of %s is in radians, %.6g deg; write '%s deg' if that is meant", text,
+               slope->number[0] * 360.0 / STRUT_TAU, text);
 }
 
 static void read_one(strut_reader *reader, strut_fields *fields, strut_place place,

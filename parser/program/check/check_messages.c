@@ -154,15 +154,6 @@ void strut_check_bands(const strut_model *model, const strut_experiment *experim
 /* Larger files are models. */
 enum { LARGEST = 16 << 20 };
 
-/* A line that begins with the key, so that models, which may be large, are not read twice. */
-static bool names_study(const char *text) {
-  for (const char *line = text; line; line = strchr(line, '\n')) {
-    if (*line == '\n') line++;
-    if (strncmp(line, "study:", 6) == 0 || strncmp(line, "{", 1) == 0) return true;
-  }
-  return false;
-}
-
 bool strut_is_study(const char *path) {
   struct stat found;
   strut_error error = {0};
@@ -173,7 +164,7 @@ bool strut_is_study(const char *path) {
   bool study = false;
   bool file = stat(path, &found) == 0 && S_ISREG(found.st_mode) && found.st_size <= LARGEST;
   if (!file || strut_file_read(path, &text, &length, &error) != STRUT_OK) return false;
-  if (names_study(text)) {
+  if (strstr(text, "study")) { /* so that models, which may be large, are not read twice */
     strut_diagnostics_source(&unused, path, text, length);
     strut_document_read(&document, &unused);
     study = document.root && strut_tree_is_study(document.root);
