@@ -13,12 +13,14 @@ if command -v podman >/dev/null; then
   there podman || { echo "skipped: podman cannot get $base"; exit 77; }
   podman build -q -t localhost/strut-test -f docs/Containerfile . >/dev/null
   said=$(podman run --rm localhost/strut-test run $crawler --accuracy 0.5%)
+  podman rmi localhost/strut-test >/dev/null
 elif command -v buildah >/dev/null; then
   there buildah || { echo "skipped: buildah cannot get $base"; exit 77; }
   buildah build -q --pull=false -t localhost/strut-test -f docs/Containerfile . >/dev/null
   box=$(buildah from --pull=false localhost/strut-test)
   said=$(buildah run "$box" -- strut run $crawler --accuracy 0.5%)
   buildah rm "$box" >/dev/null
+  buildah rmi localhost/strut-test >/dev/null
 else
   echo "skipped: needs podman or buildah"
   exit 77
