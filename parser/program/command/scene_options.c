@@ -54,10 +54,9 @@ const strut_option strut_experiment_options[] = {
 
 static strut_status apply_settings(const strut_arguments *arguments, strut_experiment *experiment) {
   bool by_hand = arguments->integrator.text || arguments->step.text;
-  if (arguments->integrator.text) {
+  if (arguments->integrator.text)
     experiment->integrator = strut_integrator_find(arguments->integrator.text)->name;
-    experiment->integrator_named = true;
-  }
+  if (arguments->integrator.text) experiment->integrator_named = true;
   if (arguments->accuracy.text)
     experiment->accuracy = arguments->accuracy.value, experiment->accuracy_assumed = false;
   if (arguments->step.text) experiment->step = arguments->step.value;
