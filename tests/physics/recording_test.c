@@ -73,13 +73,18 @@ static void clean(void) {
 
 BEFORE_EACH { clean(); }
 
-/* x = 1 + 0.5 t for the mass, which nothing moves. */
+/* x = 1 + 0.5 t for the mass, which nothing moves; its mean is measured. */
 static strut_setup gliding(double step, double duration, double every) {
   strut_setup setup = build_tethered(1, 0, 1);
   build_sized(&setup.scene, STRUT_CABLE, 0, 1, 10, 1, 0, 1000);
   setup.scene.nodes[1].velocity[0] = 0.5;
   motion_experiment(&setup, step, duration);
   setup.experiment.output_every = every;
+  static strut_instruction x = {.operation = STRUT_OPERATION_COLUMN,
+                                .column = {STRUT_COLUMN_NODE_X, 1, -1}};
+  static strut_quantity_definition mean = {
+      .name = "x", .unit = "m", .length = 1, .depth = 1, .program = &x};
+  setup.experiment.quantities = &mean, setup.experiment.quantity_count = 1;
   return setup;
 }
 

@@ -518,7 +518,9 @@ static void see_piece(strut_observer *observer, strut_state *state,
   part.to = 1.0;
   if (quantities->next > 0 && quantities->next < quantities->marks.count) add_part(&part);
   strut_dense_return(&quantities->dense, state, &piece);
-  if (quantities->next >= quantities->marks.count) state->watched.observer = NULL;
+  /* a recording may watch the steps of a method without pieces */
+  if (quantities->next >= quantities->marks.count && state->watched.observer == observer)
+    state->watched.observer = NULL;
 }
 
 /* May a mark lie within the next step of the grid? */
