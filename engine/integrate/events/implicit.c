@@ -40,7 +40,7 @@ static const strut_tableau tableau = {.stages = STAGES,
                                       .ahead = {0.0, 0.386, 0.21, 0.63, 1.0, 1.0, 1.0},
                                       .difference = {0.25}};
 
-/* Steps of differences: over the size, over the fastest speed, over the step. */
+/* Steps of differences: over the size, over the fastest speed and the own one, over the step. */
 static const double OF_SIZE = 1.5e-8, OF_SPEED = 1.5e-8, OF_STEP = 1e-3;
 
 typedef struct strut_implicit {
@@ -78,7 +78,7 @@ static void add_column(const trial *self, int k, int32_t j, double step, double 
   const strut_implicit *implicit = self->m;
   const strut_step_end *now = self->stepper->now;
   double *at = &self->stepper->stage[k ? V : Q][implicit->coordinate[j]], before = *at;
-  *at += step;
+  *at += k ? fmax(step, OF_SPEED * fabs(before)) : step;
   step = *at - before;
   evaluate(self, self->t + self->behind);
   for (int32_t i = 0; i < implicit->n; i++)
