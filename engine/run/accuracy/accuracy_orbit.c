@@ -228,27 +228,34 @@ static void correct_orbit(strut_orbit_solve *solve, double enough, int least) {
   }
 }
 
+/* What a run of the orbit is for: its results; a record; whether the motion leaves it. */
+typedef enum orbit_run { ORBIT_MEASURED, ORBIT_RECORDED, ORBIT_LEFT } orbit_run;
 /*
- * Runs the orbit by the method of `e` over one repetition, or, to record it, over as many periods as `output`
- * names.
+ * Repetitions after which a motion shows that it leaves a corrected orbit: first ones hide slow returns. Corrections by
+ * less than this part of the wanted error need none.
  */
-static void run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
+static const double LATER = 3.0, MOVED = 0.3;
+
+/*
+ * Runs the orbit by the method of `e` over one repetition; to record it, over as many periods as `output` names; or
+ * later ones, of which the last is measured.
+ */
+static void run_orbit(strut_orbit_solve *solve, strut_experiment e, orbit_run why,
                       strut_summary *summary) {
   strut_accuracy *accuracy = solve->a;
   double period = solve->coarse_map.period;
-  e.measure_last = 0.0;
   e.steady.wanted = false;
   e.step = period / ceil(period / e.step * (1.0 - 1e-9)); /* as the maps have it */
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
   e.periods = ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
-  if (record) e.periods = fmax(e.periods, e.output_last);
+  e.measure_last = why == ORBIT_LEFT ? e.periods : 0.0;
+  if (why == ORBIT_LEFT) e.periods *= LATER;
+  if (why == ORBIT_RECORDED) e.periods = fmax(e.periods, e.output_last);
   e.output_last = 0.0;
   strut_run_options options = *accuracy->options;
   strut_accuracy_begin_phase(accuracy, "running the orbit");
-  if (record)
-    options.to = NULL;
-  else
-    options.sink_count = 0;
+  if (why != ORBIT_MEASURED) options.to = NULL;
+  if (why != ORBIT_RECORDED) options.sink_count = 0;
   strut_orbit_place_copy(solve, &solve->known, &solve->end);
   const strut_snapshot from = strut_orbit_place_snapshot(solve, &solve->end);
   options.from = &from;
@@ -486,6 +493,22 @@ static void check_window(strut_orbit_solve *solve) {
 }
 
 /*
+ * The velocity of the orbit from that of the run [m/s], or of a later repetition, by which a motion may have left an
+ * orbit that was corrected by more than part of the `wanted` error.
+ */
+static double compare_with_run(strut_orbit_solve *solve, strut_experiment e, double velocity,
+                               double wanted) {
+  double apart = fabs(velocity - solve->orbit.velocity);
+  double moved = fabs(solve->coarse_run.velocity - solve->orbit.velocity);
+  if (solve->answer != STRUT_ORBIT_CORRECTED || moved <= MOVED * wanted) return apart;
+  strut_summary later = {0};
+  run_orbit(solve, e, ORBIT_LEFT, &later);
+  double left = fabs(later.velocity - solve->orbit.velocity);
+  discard_run(solve, &later);
+  return fmax(apart, left);
+}
+
+/*
  * Runs the orbit once: does its velocity agree within `part` of the wanted error? Where it is
  * recorded it is then run again, of which nothing is reported, so that the answer does not depend on
  * recordings.
@@ -494,18 +517,19 @@ static bool confirm_by(strut_orbit_solve *solve, strut_experiment e, double part
                        strut_summary *orbit) {
   strut_accuracy *accuracy = solve->a;
   discard_run(solve, orbit);
-  run_orbit(solve, e, false, orbit);
-  double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
-  solve->apart = fabs(orbit->velocity - solve->orbit.velocity);
+  run_orbit(solve, e, ORBIT_MEASURED, orbit);
+  double wanted =
+      accuracy->target * strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
+  if (!solve->status) solve->apart = compare_with_run(solve, e, orbit->velocity, wanted);
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
-  bool agrees = solve->apart <= part * accuracy->target * size &&
-                strut_orbit_solve_error_share(solve, solve->answer) <= 1.0;
+  bool agrees =
+      solve->apart <= part * wanted && strut_orbit_solve_error_share(solve, solve->answer) <= 1.0;
   if (solve->status || !(ran_on || agrees)) return false;
   if (!accuracy->options->sink_count) return true;
   strut_summary recorded = {0};
   int64_t allowed = accuracy->allowed;
   accuracy->allowed = INT64_MAX; /* what is recorded does not decide whether the work suffices */
-  run_orbit(solve, e, true, &recorded);
+  run_orbit(solve, e, ORBIT_RECORDED, &recorded);
   accuracy->allowed = allowed;
   strut_summary_free(&recorded);
   return true;
