@@ -178,10 +178,15 @@ TEST(large_exponents) {
       "solver: {integrator: rk4, step: 1 ms}\n"
       "run: {duration: 10 s, measure: {quantities: {decay: exp(-5*time/(1 s)), pole: (1 + a.x/(1 "
       "m))^-4,\n"
-      "  bell: {of: \"exp(-((a.x - 5 m)/(10 mm))^2)\", take: max}}}}\n");
+      "  bell: {of: \"exp(-((a.x - 5 m)/(10 mm))^2)\", take: max},\n"
+      "  thin: \"exp(-((a.x - 5 m)/(100 um))^2)\", hair: \"exp(-((a.x - 5 m)/(1 um))^2)\"}}}\n");
   assert_all_near(1e-6, value(&r, "decay"), 0.02, value(&r, "bell"), 1);
   assert_near(value(&r, "pole"), 1 / 30.0, 1e-4);
   assert_false(get(&r, "decay")->zero || get(&r, "bell")->zero || get(&r, "pole")->zero);
+  assert_false(get(&r, "thin")->zero);
+  assert_relative(value(&r, "thin"), sqrt(PI) * 1e-5, 1e-3);
+  assert_near(value(&r, "hair"), sqrt(PI) * 1e-7,
+              get(&r, "hair")->left); /* samples are 31 um apart */
 }
 
 /* Free fall above a slope of 30 degrees, over the last second of two. */

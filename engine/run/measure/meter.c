@@ -219,7 +219,7 @@ void strut_meter_open(strut_meter *meter, double time, double value, double orig
   meter->value = value;
   meter->elapsed = 0.0;
   meter->doubt = 0.0;
-  meter->least = HUGE_VAL, meter->most = -HUGE_VAL;
+  meter->least = HUGE_VAL, meter->most = -HUGE_VAL, meter->missed = 0.0;
   meter->largest = fabs(value);
   meter->branch = meter->seen;
   double above = value - meter->definition->target;
@@ -420,7 +420,10 @@ static bool is_unresolved(const strut_meter *meter, const strut_samples *samples
   return off > resolution(meter) + ROUNDED * meter->largest;
 }
 
-double strut_meter_left(const strut_meter *meter) {
+double strut_meter_left(const strut_meter *meter, double window) {
+  double missed = meter->missed / window, square = meter->whole.square / window;
+  if (meter->definition->take == STRUT_TAKE_MEAN) return missed;
+  if (meter->definition->take == STRUT_TAKE_RMS) return sqrt(square + missed) - sqrt(square);
   return (takes_low(meter) ? fmax(0.0, meter->whole.low - meter->least) : 0.0) +
          (takes_high(meter) ? fmax(0.0, meter->most - meter->whole.high) : 0.0);
 }
@@ -501,13 +504,14 @@ static void pass_point(strut_meter *meter, const strut_samples *samples, strut_r
   note_arrival(meter, samples->begin + at * samples->length);
 }
 
-static double integrate_samples(const double *f, int last, bool squared) {
+/* By Simpson's rule, from every sample or every second one. */
+static double integrate_samples(const double *f, int last, int stride, bool squared) {
   double sum = 0.0;
-  for (int k = 0; k <= last; k++) {
-    double weight = k == 0 || k == last ? 1.0 : k % 2 ? 4.0 : 2.0;
+  for (int k = 0; k <= last; k += stride) {
+    double weight = k == 0 || k == last ? 1.0 : k / stride % 2 ? 4.0 : 2.0;
     sum += weight * (squared ? f[k] * f[k] : f[k]);
   }
-  return sum / (3.0 * last);
+  return sum * stride / (3.0 * last);
 }
 
 /* An extreme near sample k, between its neighbours; beside the ends also that of the outer half. */
@@ -578,8 +582,14 @@ void strut_meter_add(strut_meter *meter, const strut_samples *samples) {
     pass_point(meter, samples, at, sample), at = sample;
     if (found && extreme.at > sample.at) pass_point(meter, samples, at, extreme), at = extreme;
   }
-  add_integrals(meter, samples->length * integrate_samples(samples->value, last, false),
-                samples->length * integrate_samples(samples->value, last, true));
+  double integral[2][2]; /* of the value and its square, from all samples and from half of them */
+  for (int k = 0; k < 2; k++)
+    for (int half = 0; half < 2; half++)
+      integral[k][half] =
+          samples->length * integrate_samples(samples->value, last, 1 + half, k == 1);
+  add_integrals(meter, integral[0][0], integral[1][0]);
+  const double *own = integral[meter->definition->take == STRUT_TAKE_RMS];
+  if (!samples->resolved && meter->rate_of == (size_t)-1) meter->missed += fabs(own[0] - own[1]);
   add_doubt(meter, samples, &before);
   for (int k = 1; k < last; k += 2) {
     double least, most;

@@ -115,6 +115,7 @@ typedef struct strut_meter {
       doubt; /* uncertainty of the result, where the interpolation is too coarse; that of MEAN, RMS and
                    RISE over the whole window times its length [s] */
   double least, most; /* that extremes may be where samples do not resolve the value */
+  double missed;      /* what its integral, or that of the square, may lack there */
   /* of ARRIVAL: begins above (1) or below (-1) the target, at it 0; how close it is now, how close the
      nearest turn before the arrival came; how far it then went beyond, until it returned */
   double side, close, nearest, beyond;
@@ -130,6 +131,7 @@ typedef struct strut_samples {
   double begin, length; /* [s] */
   int count;            /* 2^depth + 1 */
   double value[STRUT_MOST_SAMPLES];
+  bool resolved;
   double doubt; /* difference that polynomials of one order less make in the middle */
   /** The quantity at the fraction `at` of the part. */
   double (*sample)(void *context, double at);
@@ -141,7 +143,7 @@ void strut_meter_open(strut_meter *meter, double time, double value, double plac
 /** Could a kink within the next `length` [s], at whose end the value is `value`, change the result? */
 bool strut_meter_may_turn(const strut_meter *meter, double value, double length);
 /** Uncertainty of the result where samples do not resolve an extreme. */
-double strut_meter_left(const strut_meter *meter);
+double strut_meter_left(const strut_meter *meter, double window);
 /** How far from the target the extreme is that decides whether and when it is reached; HUGE_VAL: at it already. */
 double strut_meter_margin(const strut_meter *meter);
 /** A mark of the window: ends one period and starts the next. */

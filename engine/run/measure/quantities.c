@@ -98,11 +98,27 @@ static void bound_result(strut_operation operation, strut_magnitude a, strut_mag
   }
 }
 
+/* The rounding error of a result that is at most 1. That of a power falls with it, and a constant scales it. */
+static double small_noise(strut_operation operation, strut_magnitude a, strut_magnitude b,
+                          double noise) {
+  strut_sensitivity kind = sensitivities[operation];
+  bool scaled = (kind == STRUT_SENSITIVITY_PRODUCT || kind == STRUT_SENSITIVITY_QUOTIENT) &&
+                (a.low == a.high || b.low == b.high);
+  if (kind == STRUT_SENSITIVITY_POWER && b.low == b.high && b.low >= 1.0)
+    return propagate_uncertainty(operation, 1.0, b.size, a.still, 0.0);
+  if (scaled || operation == STRUT_OPERATION_NEGATE)
+    return propagate_uncertainty(operation, a.size, b.size, a.still, b.still);
+  return noise;
+}
+
 static strut_magnitude combine_magnitudes(strut_operation operation, strut_magnitude a,
                                           strut_magnitude b) {
   double size = 1.0;
   switch (sensitivities[operation]) {
-    case STRUT_SENSITIVITY_EXPONENTIAL: a.size = a.high; /* fall through */
+    case STRUT_SENSITIVITY_EXPONENTIAL:
+      a.size = a.high;
+      if (a.high <= 1.0) a.noise = a.still; /* what lies further below hardly counts */
+      /* fall through */
     case STRUT_SENSITIVITY_PRODUCT:
     case STRUT_SENSITIVITY_QUOTIENT:
     case STRUT_SENSITIVITY_ROOT:
@@ -119,6 +135,7 @@ static strut_magnitude combine_magnitudes(strut_operation operation, strut_magni
       .size = size,
       .span = propagate_uncertainty(operation, a.size, b.size, a.span, b.span),
       .noise = propagate_uncertainty(operation, a.size, b.size, a.noise, b.noise)};
+  result.still = small_noise(operation, a, b, result.noise);
   bound_result(operation, a, b, &result);
   return result;
 }
@@ -385,7 +402,8 @@ static void add_to_meter(motion_part *part, size_t i, double begin) {
     depth++;
     fill_grid(part, depth);
     copy_samples(part, depth, &samples);
-  } while (depth < STRUT_DEEPEST && !strut_meter_is_resolved(meter, &samples));
+    samples.resolved = strut_meter_is_resolved(meter, &samples);
+  } while (depth < STRUT_DEEPEST && !samples.resolved);
   if (depth > 1) samples.doubt = find_doubt(part);
   strut_meter_add(meter, &samples);
 }
@@ -602,7 +620,7 @@ static void fill_measured(strut_quantities *quantities, strut_meter *meter, stru
   if (take == STRUT_TAKE_ARRIVAL) to->margin = strut_meter_margin(meter);
   if (!isfinite(meter->result)) return;
   to->doubt = meter->doubt / (summed ? window : 1.0);
-  to->left = strut_meter_left(meter);
+  to->left = strut_meter_left(meter, window);
   to->value = meter->result;
   int32_t loaded = quantities->columns.loaded; /* where the largest force of all was asked for */
   if (strut_quantity_names_member(meter->definition) && loaded >= 0)
@@ -626,7 +644,8 @@ void strut_quantities_finish(strut_quantities *quantities, strut_summary *summar
                                              .low = columns->least[i],
                                              .high = columns->most[i],
                                              .span = strut_columns_span(columns, i),
-                                             .noise = strut_columns_noise(columns, i)};
+                                             .noise = strut_columns_noise(columns, i),
+                                             .still = strut_columns_noise(columns, i)};
   for (size_t i = 0; i < quantities->count && i < summary->measured_count; i++)
     fill_measured(quantities, &quantities->meters[i], &summary->measured[i]);
 }

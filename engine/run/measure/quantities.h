@@ -68,6 +68,7 @@ typedef struct strut_magnitude {
   double low, high; /* between which its values lie */
   double span;      /* range */
   double noise;     /* rounding error */
+  double still;     /* that where the value is at most 1, as counts in an exponential */
 } strut_magnitude;
 
 /** Evaluates the program on magnitudes: sums take the larger size and add range and rounding. */
