@@ -197,11 +197,12 @@ static void own_friction(strut_reader *reader, strut_fields *fields, friction_la
   add_layer(reader, layers, &nested);
 }
 
-/* Forward is where the part's own x points, along the ground. */
+/* Forward is where the part's own x points, along the ground; of a friction of the scene it is that of the ground. */
 static bool turn_friction(strut_reader *reader, const strut_tree *key, const double along[2],
                           strut_friction *friction) {
   double ahead[2] = {1.0, 0.0};
-  if (!reader->scope || !friction->directional) return true;
+  const strut_tree *own = strut_tree_find(key->next, "friction", NULL);
+  if (!strut_scope_of(reader, own) || !friction->directional) return true;
   strut_place_vector(reader, NULL, ahead);
   double forward = strut_dot(ahead, along, 2);
   if (fabs(forward) < 1e-9)
@@ -280,6 +281,22 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, unsigned char
   return fine;
 }
 
+/* Keys that the scene gives under the name of a copy's contact change that one. */
+static void add_entry(strut_reader *reader, const strut_tree *own, const strut_tree **entry) {
+  struct {
+    strut_placed_tree key;
+    strut_tree value;
+  } *both = NULL;
+  if (*entry && (*entry)->placed && own->next->kind == STRUT_TREE_MAP)
+    both = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *both);
+  if (both) {
+    both->key = *(const strut_placed_tree *)*entry, both->value = *(*entry)->next;
+    both->key.tree.next = &both->value;
+    strut_lay_over_placed(reader, &both->value, own->next, STRUT_SECTION_CONTACT);
+  }
+  *entry = both ? &both->key.tree : own;
+}
+
 /* The entry in `contacts` of each node that has one. */
 static bool find_entries(strut_reader *reader, strut_fields *fields, const unsigned char *touches,
                          bool complete, const strut_tree **entry) {
@@ -289,12 +306,12 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, const unsig
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
     if (strut_is_pattern(key)) {
       for (int32_t node = -1; (node = strut_next_match(reader, key, node)) >= 0;)
-        if (touches[node]) entry[node] = key;
+        if (touches[node]) add_entry(reader, key, &entry[node]);
       continue;
     }
     int32_t node = strut_read_reference(reader, key, "contacts", fields->owner, STRUT_THING_NODE);
     if (node >= 0 && touches[node]) {
-      entry[node] = key;
+      add_entry(reader, key, &entry[node]);
       continue;
     }
     fine = false;

@@ -178,14 +178,12 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   const strut_tree *expression = strut_tree_find(map, "expression", NULL);
   if (strut_ends_at_comma(reader, expression, "expression", owner)) return -1;
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
-  int chosen = 0;
-  unsigned kinds = 0;
-  for (int kind = STRUT_DATA; kind >= 0; kind--) /* a relay is a controller */
-    if (fields.slot[kind].state == STRUT_GIVEN) chosen = kind, kinds++;
-  if (kinds != 1 && !fields.broken)
-    strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
-                       strut_owner_text(reader, owner), kinds);
-  if (kinds != 1 || fields.broken) return -1;
+  int chosen = STRUT_DATA; /* a relay is a controller */
+  while (chosen >= 0 && fields.slot[chosen].state != STRUT_GIVEN) chosen--;
+  if (chosen < 0 && !fields.broken)
+    strut_report_error(reader, map->place, "expected a kind of signal for %s",
+                       strut_owner_text(reader, owner));
+  if (chosen < 0 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
   bool fine = strut_store(reader, &fields, &signal);

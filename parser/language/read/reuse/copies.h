@@ -128,6 +128,9 @@ typedef struct strut_merger {
 
 /** The section of the things in a mapping of the scene, or STRUT_SECTION_COUNT. */
 strut_section strut_section_of_things(int scene_key);
+/** Lays the mapping `over`, of the scene, on the value of a copied entry, whose head is its own. */
+void strut_lay_over_placed(strut_reader *reader, strut_tree *value, const strut_tree *over,
+                           strut_section section);
 
 void strut_copies_free(strut_reader *reader);
 

@@ -127,9 +127,8 @@ strut_section strut_section_of_things(int scene_key) {
   return kind.things ? kind.section : STRUT_SECTION_COUNT;
 }
 
-/* Lays the mapping `over` on the value of an entry, whose head is its own. */
-static void lay_over(strut_reader *reader, strut_tree *value, const strut_tree *over,
-                     strut_section section) {
+void strut_lay_over_placed(strut_reader *reader, strut_tree *value, const strut_tree *over,
+                           strut_section section) {
   const strut_overlay overlay = {.arena = &reader->scratch, .of_scene = true, .whole = true};
   if (value->kind == STRUT_TREE_SCALAR) return;
   strut_tree *joined = strut_lay_over(&overlay, (strut_mapping_kind){section, false}, value, over);
@@ -218,7 +217,7 @@ static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all
       all->removed[i] = true;
       strut_add_name(reader, &reader->copies->removed, all->key[i]->text, i);
     } else if (fine) {
-      lay_over(reader, all->key[i]->next, own->next, strut_section_of_things(key));
+      strut_lay_over_placed(reader, all->key[i]->next, own->next, strut_section_of_things(key));
     }
     if (!pattern) break;
   }
