@@ -53,6 +53,9 @@ static const double FALL = 0.7;
  * method.
  */
 static const double CONFIRMED_BY_FINER = 0.3, CONFIRMED = 0.6;
+/* An orbit moved by more than this part is confirmed by a later repetition, too: the first may hide a slow return. */
+static const double MOVED = 0.3;
+enum { LATER = 3 };
 
 /* Where stability bounds the coarse step, finer ones cost less than the reference method. */
 static bool uses_finer_steps(const strut_accuracy *accuracy) {
@@ -228,34 +231,27 @@ static void correct_orbit(strut_orbit_solve *solve, double enough, int least) {
   }
 }
 
-/* What a run of the orbit is for: its results; a record; whether the motion leaves it. */
-typedef enum orbit_run { ORBIT_MEASURED, ORBIT_RECORDED, ORBIT_LEFT } orbit_run;
 /*
- * Repetitions after which a motion shows that it leaves a corrected orbit: first ones hide slow returns. Corrections by
- * less than this part of the wanted error need none.
+ * Runs the orbit by the method of `e` over one repetition, or, to record it, over as many periods as `output`
+ * names.
  */
-static const double LATER = 3.0, MOVED = 0.3;
-
-/*
- * Runs the orbit by the method of `e` over one repetition; to record it, over as many periods as `output` names; or
- * later ones, of which the last is measured.
- */
-static void run_orbit(strut_orbit_solve *solve, strut_experiment e, orbit_run why,
+static void run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
                       strut_summary *summary) {
   strut_accuracy *accuracy = solve->a;
   double period = solve->coarse_map.period;
+  e.measure_last = 0.0;
   e.steady.wanted = false;
   e.step = period / ceil(period / e.step * (1.0 - 1e-9)); /* as the maps have it */
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
   e.periods = ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
-  e.measure_last = why == ORBIT_LEFT ? e.periods : 0.0;
-  if (why == ORBIT_LEFT) e.periods *= LATER;
-  if (why == ORBIT_RECORDED) e.periods = fmax(e.periods, e.output_last);
+  if (record) e.periods = fmax(e.periods, e.output_last);
   e.output_last = 0.0;
   strut_run_options options = *accuracy->options;
   strut_accuracy_begin_phase(accuracy, "running the orbit");
-  if (why != ORBIT_MEASURED) options.to = NULL;
-  if (why != ORBIT_RECORDED) options.sink_count = 0;
+  if (record)
+    options.to = NULL;
+  else
+    options.sink_count = 0;
   strut_orbit_place_copy(solve, &solve->known, &solve->end);
   const strut_snapshot from = strut_orbit_place_snapshot(solve, &solve->end);
   options.from = &from;
@@ -492,20 +488,16 @@ static void check_window(strut_orbit_solve *solve) {
   strut_summary_free(&run);
 }
 
-/*
- * The velocity of the orbit from that of the run [m/s], or of a later repetition, by which a motion may have left an
- * orbit that was corrected by more than part of the `wanted` error.
- */
-static double compare_with_run(strut_orbit_solve *solve, strut_experiment e, double velocity,
-                               double wanted) {
-  double apart = fabs(velocity - solve->orbit.velocity);
+/* By how much a later repetition is faster or slower than a corrected orbit that was moved by more than that [m/s]. */
+static double compare_later(strut_orbit_solve *solve, double most) {
+  strut_period_map *map = &solve->reference_map;
+  double *y = strut_orbit_solve_array(solve), travel = 0.0;
   double moved = fabs(solve->coarse_run.velocity - solve->orbit.velocity);
-  if (solve->answer != STRUT_ORBIT_CORRECTED || moved <= MOVED * wanted) return apart;
-  strut_summary later = {0};
-  run_orbit(solve, e, ORBIT_LEFT, &later);
-  double left = fabs(later.velocity - solve->orbit.velocity);
-  discard_run(solve, &later);
-  return fmax(apart, left);
+  if (!y || solve->answer != STRUT_ORBIT_CORRECTED || moved <= most) return 0.0;
+  memcpy(y, solve->orbit.y, solve->both * sizeof *y);
+  for (int k = 0; k < LATER; k++) travel = strut_period_map_apply(map, y);
+  (void)strut_orbit_solve_check_maps(solve, STRUT_OK);
+  return fabs(travel / (map->period * map->repeats) - solve->orbit.velocity);
 }
 
 /*
@@ -517,19 +509,20 @@ static bool confirm_by(strut_orbit_solve *solve, strut_experiment e, double part
                        strut_summary *orbit) {
   strut_accuracy *accuracy = solve->a;
   discard_run(solve, orbit);
-  run_orbit(solve, e, ORBIT_MEASURED, orbit);
+  run_orbit(solve, e, false, orbit);
   double wanted =
       accuracy->target * strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
-  if (!solve->status) solve->apart = compare_with_run(solve, e, orbit->velocity, wanted);
+  double later = solve->status ? 0.0 : compare_later(solve, MOVED * wanted);
+  solve->apart = fmax(fabs(orbit->velocity - solve->orbit.velocity), later);
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
-  bool agrees =
-      solve->apart <= part * wanted && strut_orbit_solve_error_share(solve, solve->answer) <= 1.0;
+  bool agrees = solve->apart <= part * wanted && later <= part * wanted &&
+                strut_orbit_solve_error_share(solve, solve->answer) <= 1.0;
   if (solve->status || !(ran_on || agrees)) return false;
   if (!accuracy->options->sink_count) return true;
   strut_summary recorded = {0};
   int64_t allowed = accuracy->allowed;
   accuracy->allowed = INT64_MAX; /* what is recorded does not decide whether the work suffices */
-  run_orbit(solve, e, ORBIT_RECORDED, &recorded);
+  run_orbit(solve, e, true, &recorded);
   accuracy->allowed = allowed;
   strut_summary_free(&recorded);
   return true;
