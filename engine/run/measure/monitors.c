@@ -15,8 +15,8 @@
 
 /* ---- step limit ---- */
 
-/* Force evaluations between two samples, power iterations per sample and at the start. */
-enum { EVALUATIONS_PER_SAMPLE = 256, ITERATIONS = 1, FIRST_ITERATIONS = 30 };
+/* Force evaluations between two samples, each a power iteration; more of these at the start. */
+enum { EVALUATIONS_PER_SAMPLE = 256, FIRST_ITERATIONS = 30 };
 /* Logarithm of the growth at which an unstable motion has replaced the true one. */
 static const double LOST_MOTION = 16.0;
 
@@ -143,7 +143,7 @@ void strut_step_limit_monitor_sample(const strut_model *model, const strut_state
   for (int i = 0; i < monitor->count; i++) {
     strut_monitored_set *set = &monitor->set[i];
     perturb_motion(model, monitor, set, 1e-6);
-    for (int k = 0; k < ITERATIONS; k++) iterate_power(model, state, monitor, set);
+    iterate_power(model, state, monitor, set);
     again = again || set->strength >= set->alarm ||
             (monitor->below && set->strength < 0.99 * set->known);
   }

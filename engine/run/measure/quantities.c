@@ -98,19 +98,6 @@ static void bound_result(strut_operation operation, strut_magnitude a, strut_mag
   }
 }
 
-/* The rounding error of a result that is at most 1. That of a power falls with it, and a constant scales it. */
-static double small_noise(strut_operation operation, strut_magnitude a, strut_magnitude b,
-                          double noise) {
-  strut_sensitivity kind = sensitivities[operation];
-  bool scaled = (kind == STRUT_SENSITIVITY_PRODUCT || kind == STRUT_SENSITIVITY_QUOTIENT) &&
-                (a.low == a.high || b.low == b.high);
-  if (kind == STRUT_SENSITIVITY_POWER && b.low == b.high && b.low >= 1.0)
-    return propagate_uncertainty(operation, 1.0, b.size, a.still, 0.0);
-  if (scaled || operation == STRUT_OPERATION_NEGATE)
-    return propagate_uncertainty(operation, a.size, b.size, a.still, b.still);
-  return noise;
-}
-
 static strut_magnitude combine_magnitudes(strut_operation operation, strut_magnitude a,
                                           strut_magnitude b) {
   double size = 1.0;
@@ -135,7 +122,11 @@ static strut_magnitude combine_magnitudes(strut_operation operation, strut_magni
       .size = size,
       .span = propagate_uncertainty(operation, a.size, b.size, a.span, b.span),
       .noise = propagate_uncertainty(operation, a.size, b.size, a.noise, b.noise)};
-  result.still = small_noise(operation, a, b, result.noise);
+  bool single = a.low == a.high || b.low == b.high; /* beside a constant or nothing */
+  bool power = sensitivities[operation] == STRUT_SENSITIVITY_POWER;
+  result.still = single ? propagate_uncertainty(operation, power ? fmin(a.size, 1.0) : a.size,
+                                                b.size, a.still, b.still)
+                        : result.noise;
   bound_result(operation, a, b, &result);
   return result;
 }
