@@ -35,6 +35,23 @@ yaml() (
   cat
 )
 
+# frame FILE CABLE BAR: four cables with the keys CABLE around two bars with the keys BAR.
+frame() {
+  yaml "$1" <<END
+name: Frame
+groups: {cable: {kind: cable, $2},
+  bar: {kind: bar, $3}}
+nodes: {a: [0, 0], b: [1, 0], c: [1, 1], d: [0, 1]}
+members:
+  ab: {group: cable, nodes: [a, b]}
+  bc: {group: cable, nodes: [b, c]}
+  cd: {group: cable, nodes: [c, d]}
+  da: {group: cable, nodes: [d, a]}
+  ac: {group: bar, nodes: [a, c]}
+  bd: {group: bar, nodes: [b, d]}
+END
+}
+
 # expect CODE WORD...: runs strut WORD..., keeps stdout in out and stderr in err, compares the code.
 expect() {
   expected_code=$1

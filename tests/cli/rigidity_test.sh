@@ -3,19 +3,7 @@
 # strut rigidity: the table, the JSON, files, shapes, and what is refused.
 . "$(dirname "$0")/lib.sh"
 
-yaml x.yaml <<'END'
-name: X
-groups: {cable: {kind: cable, stiffness: 100 N/m, force_density: 5 N/m},
-  bar: {kind: bar, stiffness: 1000 N/m, force_density: -5 N/m}}
-nodes: {a: [0, 0], b: [1, 0], c: [1, 1], d: [0, 1]}
-members:
-  ab: {group: cable, nodes: [a, b]}
-  bc: {group: cable, nodes: [b, c]}
-  cd: {group: cable, nodes: [c, d]}
-  da: {group: cable, nodes: [d, a]}
-  ac: {group: bar, nodes: [a, c]}
-  bd: {group: bar, nodes: [b, d]}
-END
+frame x.yaml 'stiffness: 100 N/m, force_density: 5 N/m' 'stiffness: 1000 N/m, force_density: -5 N/m'
 expect 0 rigidity x.yaml
 err_empty
 out_has "self stress s                            1" "mechanisms rigid body                    3" \

@@ -14,7 +14,6 @@ TEST(malformed_numbers_are_named) {
   expect_error("0x1F", 0, 4, "hexadecimal numbers are not allowed");
   expect_error("1e", 0, 2, "the exponent of this number has no digits");
   expect_error("1e+", 0, 2, "the exponent of this number has no digits");
-  expect_error("1,5", 1, 1, "unexpected ','; the decimal mark is a point");
   expect_error("nan", 0, 3, "'nan' is not allowed, expected a finite number");
   expect_error("-inf", 1, 3, "'inf' is not allowed, expected a finite number");
   expect_error(".inf", 0, 1, "unexpected '.', expected a number");
@@ -26,7 +25,6 @@ TEST(malformed_numbers_are_named) {
 
 TEST(wrong_units_are_named) {
   expect_error("10 mmm", 3, 3, "unknown unit 'mmm'; did you mean 'mm'?");
-  expect_error("1 Ns/m", 2, 2, "unknown unit 'Ns'; did you mean 'N s'?");
   expect_error("10 hz", 3, 2, "unknown unit 'hz'; did you mean 'Hz'?");
   expect_error("10 parsec", 3, 6, "unknown unit 'parsec'");
   expect_error("2 pi", 2, 2, "expected an operator before 'pi'; write '*' to multiply");
@@ -83,7 +81,6 @@ TEST(wrong_dimensions_are_named) {
 }
 
 TEST(results_are_finite) {
-  expect_error("1/0", 0, 3, "division by zero");
   expect_error("2 + 1/(2 - 2)", 4, 9, "division by zero");
   expect_error("0/0", 0, 3, "division by zero");
   expect_error("sqrt(-1)", 0, 8, "the result of 'sqrt' is not a real number");
@@ -112,7 +109,6 @@ TEST(syntax_is_strict) {
   expect_error("sin()", 4, 1, "unexpected ')', expected a number, a name or '('");
   expect_error("min(1,)", 6, 1, "unexpected ')', expected a number, a name or '('");
   expect_error("1)", 1, 1, "unexpected ')', expected an operator or the end");
-  expect_error("1 2", 2, 1, "unexpected '2', expected an operator or the end");
   expect_error("2(3)", 1, 1, "unexpected '(', expected an operator or the end");
   expect_error("(1)(2)", 3, 1, "unexpected '(', expected an operator or the end");
   expect_error("*2", 0, 1, "unexpected '*', expected a number, a name or '('");
