@@ -81,18 +81,6 @@ done
 cmp next.sorted touching.sorted || fail "by next and by touching"
 cmp next.sorted hand.sorted || fail "by next and by hand: $(diff next.sorted hand.sorted)"
 
-# Keys of the scene under the name of a copy's contact change that one, forwards is then the ground's, and a signal of
-# another kind replaces one.
-yaml foot.yaml <<'END'
-parts: {foot: {nodes: {n: {position: [0, 0], mass: 1}}, contacts: {n: {stiffness: 500}}, signals: {s: {sine: {amplitude: 1, frequency: 1}}},
-               loads: {l: {node: n, force: [1, 0], signal: s}}}}
-place: {p: {part: foot, flip: x}}
-ground: {stiffness: 1000, contacts: {p.n: {damping: 9, friction: {law: coulomb, mu_forward: 0.1, mu_backward: 0.9}}}}
-signals: {p.s: {ramp: {amplitude: 2, stop: 1}}}
-END
-expect 0 export foot.yaml
-out_has "stiffness: 500" "damping: 9" "mu_kinetic: 0.1, mu_backward: 0.9" "p.s: {ramp: {amplitude: 2, stop: 1}}"
-
 # Turning by 360 degrees is none, also where a copy is moved and scaled.
 for repeat in 'turn: 360 deg' 'turn: 0 deg' 'turn: 720 deg'; do
   edit "s/step: \[1, 0\], next: {merge: {b: a, c: d}}/step: [2, 1], scale: 2, $repeat/" next.yaml expect 0 export

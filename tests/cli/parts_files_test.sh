@@ -62,10 +62,11 @@ sed -e '/use:/{s/{.*//' -e 'r inside' -e 'a\    parameters: {height: 0.1 m, k: 1
 "$strut" export spine.yaml >flat
 expect 0 export byhand.yaml
 same flat out
-# The contacts of a ground's list come with the part.
-printf 'ground: {stiffness: 3 kN/m, height: -1 m, nodes: []}\n' | cat spine.yaml - >grounded.yaml
+# The contacts of a ground's list come with the part, and keys under the name of one change it.
+printf 'ground: {stiffness: 3 kN/m, height: -1 m, nodes: [], contacts: {v.1.lower: {damping: 9}}}\n' |
+  cat spine.yaml - >grounded.yaml
 shows 0 'nodes: [v.0.lower, v.1.lower, v.2.lower, v.3.lower]' export grounded.yaml
-out_has '  stiffness: 2000'
+out_has '  stiffness: 2000' 'v.1.lower: {damping: 9}'
 # It sees no names of the scene around it, and may have names that this has too.
 sed 's/10\*k/10*k*hold/' cells/vertebra.yaml >cells/asks.yaml
 sed 's/vertebra.yaml/asks.yaml/' spine.yaml >asking.yaml
@@ -78,7 +79,10 @@ expect 0 check named.yaml
 # A file within a file, from the folder of that one.
 printf 'strut: 1\nparts: {p: {use: vertebra.yaml}}\nplace: {a: {part: p}, b: {part: p, flip: x}}\n' >cells/two.yaml
 printf 'strut: 1\nparts: {q: {use: cells/two.yaml}}\nplace: {x: {part: q}, y: {part: q, at: [2 m, 0]}}\n' >four.yaml
+forward='friction: {law: coulomb, mu_forward: 0.1, mu_backward: 0.9}' # of the ground, also for a mirrored copy
+printf "ground: {stiffness: 1, nodes: [], contacts: {y.b.lower: {$forward}}}\n" >>four.yaml
 shows 0 'y.b.front: {position: [1.7, 0], mass: 0.005}' export four.yaml
+out_has 'y.b.lower: {friction: {law: coulomb, mu_static: 0.1, mu_kinetic: 0.1, mu_backward: 0.9'
 # From the standard input, the folder is the current one.
 "$strut" export - <spine.yaml >again
 same flat again
