@@ -12,14 +12,17 @@ members: {m: {nodes: [a, b], kind: spring, $2}}
 END
 }
 
+# kicked FILE MEMBER [MASS]: the same, which starts at 1 m/s, by rk4 with a step of 1 ms.
+kicked() {
+  { printf 'initial: {velocities: {b: [1, 0]}}\nsolver: {integrator: rk4, step: 1 ms}\n' && cat; } | beside "$@"
+}
+
 # A mass under PD control, -k (x - 1 m) - c v by a load: the damped oscillator with the poles
 # -c/2m +- i sqrt(k/m - (c/2m)^2), by every method at its order.
-beside pd.yaml 'stiffness: 1e-12' <<'END'
+kicked pd.yaml 'stiffness: 1e-12' <<'END'
 parameters: {k: 40 N/m, c: 0.8 N s/m}
 sensors: {x: {position: b, along: x}, v: {velocity: b, along: x}}
 loads: {pd: {node: b, force: [1 N, 0], signal: {expression: "-(k*(x - 1 m) + c*v)/(1 N)"}}}
-initial: {velocities: {b: [1, 0]}}
-solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: x - 1 m, take: final}, v: {of: v, take: final}}}}
 END
 poles='(0.2) as $a | (20 - 0.04 | sqrt) as $w | '
@@ -29,13 +32,11 @@ by "rk4:1e-11 rk4-events:1e-11 adaptive:1e-8 verlet:1e-5 verlet-events:1e-5 midp
 
 # A rest length that follows its own member's length: k (1 + g) and c (1 + g), since the damper feels
 # the rate that is derived from the expression. The energy balance closes with the drive's work.
-beside length.yaml 'stiffness: k, damping: c' <<'END'
+kicked length.yaml 'stiffness: k, damping: c' <<'END'
 parameters: {k: 40 N/m, c: 0.8 N s/m, g: 0.75}
 sensors: {l: {length: m}}
 signals: {error: {expression: "1 m - l"}}
 actuators: {pd: {member: m, signal: {expression: g*error}}}
-initial: {velocities: {b: [1, 0]}}
-solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: l - 1 m, take: final}, e: {of: error, take: final}}}}
 END
 poles='(0.35) as $a | (35 - 0.1225 | sqrt) as $w | '
@@ -44,11 +45,9 @@ by "rk4:1e-10 rk4-events:1e-10 adaptive:1e-8 verlet:4e-5 verlet-events:4e-5 midp
   .measured.e.value "$poles"'-(-2*$a | exp) * (2*$w | sin) / $w' own .energy.residual 0 own
 
 # The same poles from an actuator that gives a force, by the length and its rate.
-beside force.yaml 'stiffness: 1e-12' <<'END'
+kicked force.yaml 'stiffness: 1e-12' <<'END'
 sensors: {l: {length: m}}
 actuators: {pd: {member: m, force: {expression: "70 N/m*(l - 1 m) + 1.4 N s/m*rate(l)"}}}
-initial: {velocities: {b: [1, 0]}}
-solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: l - 1 m, take: final}}}}
 END
 by "rk4:1e-10 rk4-events:1e-10 adaptive:1e-8 verlet:4e-5 midpoint:4e-5 euler:2e-2" force.yaml \
@@ -168,11 +167,9 @@ want=$(jq .measured.x.value out)
 edit 's/step: 10 ms/step: 12.5 ms/' run.yaml gives '.measured.x.value' "$want" 1e-9 run --set K=1
 
 # A held rest length jumps at each sample; what that does to the elastic energy is work of the drive.
-beside held.yaml 'stiffness: 40, damping: 1' '1 kg' <<'END'
+kicked held.yaml 'stiffness: 40, damping: 1' '1 kg' <<'END'
 sensors: {x: {position: b, along: x}}
 actuators: {d: {member: m, signal: {expression: -0.3*(x - 1 m), every: 100 ms}}}
-initial: {velocities: {b: [1, 0]}}
-solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2.05 s, measure: {quantities: {x: {of: x, take: final}}}}
 END
 expect 0 run held.yaml --json
@@ -353,15 +350,13 @@ cat >brain.csv <<'END'
 1.5, -0.7, 0
 -0.3,0.9,0.2
 END
-beside brain.yaml 'stiffness: 40 N/m, damping: 0.1 N s/m' <<'END'
+kicked brain.yaml 'stiffness: 40 N/m, damping: 0.1 N s/m' <<'END'
 sensors: {l: {length: m}, v: {velocity: b, along: x}}
 signals: {one: {expression: "tanh(0.5*l/(1 m) - 1.2*v/(1 m/s) + 0.1)"},
           two: {expression: "tanh(0.8*l/(1 m) + 0.3*v/(1 m/s) - 0.4)"}}
 controllers: {push: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], scale: 3 N},
               pull: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], output: 2, last: linear, scale: 2 N}}
 actuators: {push: {member: m, force: push}, pull: {member: m, force: pull}}
-initial: {velocities: {b: [1, 0]}}
-solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {push: {of: "abs(push/(1 N) - 3*tanh(1.5*one - 0.7*two))", take: max},
         pull: {of: "abs(pull/(2 N) - (0.9*two - 0.3*one + 0.2))", take: max}, x: {of: b.x, take: final}}}}
 END

@@ -82,8 +82,7 @@ static strut_setup gliding(double step, double duration, double every) {
   setup.experiment.output_every = every;
   static strut_instruction x = {.operation = STRUT_OPERATION_COLUMN,
                                 .column = {STRUT_COLUMN_NODE_X, 1, -1}};
-  static strut_quantity_definition mean = {
-      .name = "x", .unit = "m", .length = 1, .depth = 1, .program = &x};
+  static strut_quantity_definition mean = {.name = "x", .length = 1, .depth = 1, .program = &x};
   setup.experiment.quantities = &mean, setup.experiment.quantity_count = 1;
   return setup;
 }

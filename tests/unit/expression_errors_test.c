@@ -82,7 +82,6 @@ TEST(wrong_dimensions_are_named) {
 
 TEST(results_are_finite) {
   expect_error("2 + 1/(2 - 2)", 4, 9, "division by zero");
-  expect_error("0/0", 0, 3, "division by zero");
   expect_error("sqrt(-1)", 0, 8, "the result of 'sqrt' is not a real number");
   expect_error("log(0)", 0, 6, "the result of 'log' is not finite");
   expect_error("log(-1)", 0, 7, "the result of 'log' is not a real number");
