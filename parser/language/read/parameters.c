@@ -93,7 +93,7 @@ static void note_scale(strut_reader *reader, const strut_parameter_state *parame
              unit ? unit : "UNIT");
 }
 
-/* Does what is given fit what the file declares? A bare value takes the declared dimension. */
+/* Does what is given fit what is declared? A bare value takes the declared dimension. */
 static bool adopt_dimension(strut_reader *reader, strut_parameter_state *parameters,
                             const strut_quantity *declared) {
   char expected[200], found[80], message[320];
@@ -101,12 +101,16 @@ static bool adopt_dimension(strut_reader *reader, strut_parameter_state *paramet
   if (parameters->quantity.bare) {
     parameters->quantity.bare = false;
     parameters->quantity.dimension = declared->dimension;
-    note_scale(reader, parameters, declared);
+    if (parameters->set) note_scale(reader, parameters, declared);
   }
   if (strut_dimension_equal(parameters->quantity.dimension, declared->dimension)) return true;
-  snprintf(message, sizeof message, "expected %s, found %s",
-           strut_expected_number(declared->dimension, expected, sizeof expected),
-           strut_dimension_name(parameters->quantity.dimension, found, sizeof found));
+  strut_expected_number(declared->dimension, expected, sizeof expected);
+  strut_dimension_name(parameters->quantity.dimension, found, sizeof found);
+  if (!parameters->set)
+    return strut_report_error(reader, parameters->of_part->given->place,
+                              "expected %s for '%s' in 'set', found %s", expected, parameters->name,
+                              found);
+  snprintf(message, sizeof message, "expected %s, found %s", expected, found);
   report_setting(reader, parameters->set, parameters->key->place, message);
   return false;
 }
@@ -156,24 +160,12 @@ static bool is_copy_number(const strut_reader *reader, const char *name) {
   return place->key && (strcmp(name, "i") == 0 || strcmp(name, "j") == 0);
 }
 
-/* A value in `set` of a placement has the dimension that the part declares. */
-static bool read_given(strut_reader *reader, strut_parameter_state *parameters,
-                       const strut_quantity *declared) {
-  char expected[200], found[80];
+/* A value in `set` of a placement. */
+static bool read_given(strut_reader *reader, strut_parameter_state *parameters) {
   strut_copy *before = reader->scope;
   reader->scope = parameters->of_part->given_scope;
   bool fine = strut_read_quantity(reader, parameters->of_part->given, parameters->name,
                                   (strut_owner){"'set'", NULL}, &parameters->quantity);
-  if (fine && !declared->bare && parameters->quantity.bare) {
-    parameters->quantity.bare = false;
-    parameters->quantity.dimension = declared->dimension;
-  }
-  if (fine && !declared->bare &&
-      !strut_dimension_equal(parameters->quantity.dimension, declared->dimension))
-    fine = strut_report_error(
-        reader, parameters->of_part->given->place, "expected %s for '%s' in 'set', found %s",
-        strut_expected_number(declared->dimension, expected, sizeof expected), parameters->name,
-        strut_dimension_name(parameters->quantity.dimension, found, sizeof found));
   reader->scope = before;
   return fine;
 }
@@ -195,14 +187,14 @@ void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *parame
   bool fine = strut_read_quantity(reader, parameters->value, parameters->name,
                                   (strut_owner){"the parameters", NULL}, &declared);
   reader->scope = before;
-  if (parameters->of_part && parameters->of_part->given) {
-    fine = fine && read_given(reader, parameters, &declared);
-  } else if (parameters->set) {
+  bool given = parameters->of_part && parameters->of_part->given;
+  if (given)
+    fine = fine && read_given(reader, parameters);
+  else if (parameters->set)
     fine = evaluate_set(reader, parameters) && fine;
-    fine = fine && adopt_dimension(reader, parameters, &declared);
-  } else if (fine) {
+  else if (fine)
     parameters->quantity = declared;
-  }
+  fine = fine && ((!given && !parameters->set) || adopt_dimension(reader, parameters, &declared));
   if (parameters->state == STRUT_READING) parameters->state = fine ? STRUT_READ : STRUT_FAILED;
   reader->parameter_depth--;
 }

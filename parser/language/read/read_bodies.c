@@ -56,9 +56,9 @@ static bool apart(const strut_scene *scene, size_t i, size_t j, double thickness
   return near >= thickness;
 }
 
-/* The collisions that one stands for, added to `to` (room for all) unless that is NULL; returns how many. */
+/* The collisions that one stands for, which are added unless `key` is NULL; returns how many. */
 static size_t add_pairs(strut_reader *reader, const strut_collision *like,
-                        const char *const group[2], strut_collision *to) {
+                        const char *const group[2], const strut_tree *key) {
   const strut_scene *scene = reader->scene;
   size_t count = 0;
   for (size_t i = 0; i < scene->member_count && count <= MOST_PAIRS; i++)
@@ -66,15 +66,29 @@ static size_t add_pairs(strut_reader *reader, const strut_collision *like,
       bool one = belongs(reader, i, group[0]) && belongs(reader, j, group[1]);
       bool other = belongs(reader, i, group[1]) && belongs(reader, j, group[0]);
       if (!(one || other) || !apart(scene, i, j, like->thickness)) continue;
-      if (to) {
-        to[count] = *like;
-        to[count].name = strut_kept_text(reader, "%s_%s_%s", like->name, scene->members[i].name,
-                                         scene->members[j].name);
-        to[count].member[0] = (int32_t)i, to[count].member[1] = (int32_t)j;
-      }
       count++;
+      if (!key) continue;
+      const char *name = strut_kept_text(reader, "%s_%s_%s", like->name, scene->members[i].name,
+                                         scene->members[j].name);
+      strut_collision *collision = strut_add_thing(reader, STRUT_THING_COLLISION, key, name);
+      *collision = *like;
+      collision->name = name;
+      collision->member[0] = (int32_t)i, collision->member[1] = (int32_t)j;
     }
   return count;
+}
+
+/* Adds what one of `owner` stands for, where `more` may follow. False: there are too many, which was reported. */
+static bool replace_collision(strut_reader *reader, const strut_collision *like,
+                              const char *const group[2], const strut_tree *key, strut_place place,
+                              const char *owner, size_t more) {
+  size_t count = add_pairs(reader, like, group, NULL);
+  if (count > MOST_PAIRS)
+    return strut_report_error(reader, place, "%s more than %d pairs of members", owner,
+                              (int)MOST_PAIRS);
+  if (!count || !strut_reserve_things(reader, STRUT_THING_COLLISION, count + more)) return true;
+  add_pairs(reader, like, group, key);
+  return true;
 }
 
 /* What `collisions: all` takes: a hundredth of the drawn size, and ten times the stiffest member. */
@@ -97,94 +111,55 @@ static strut_collision usual_collision(const strut_scene *scene) {
   return usual;
 }
 
-/* A collision of the file with what it stands for. */
-typedef struct body_pairs {
-  strut_collision like;
-  const strut_tree *key;
-  const char *group[2];
-  bool many;
-  size_t count;
-} body_pairs;
-
-static bool find_pairs(strut_reader *reader, const strut_source *source,
-                       const strut_collision *collision, body_pairs *pairs) {
-  const strut_tree *between =
-      source->value ? strut_tree_find(source->value, "between", NULL) : NULL;
-  strut_owner owner = {"collision", collision->name};
-  *pairs =
-      (body_pairs){.like = *collision, .key = source->key, .many = between != NULL, .count = 1};
-  if (!between) return true;
-  bool list = between->kind == STRUT_TREE_LIST && between->count == 2;
-  if (source->broken || (between->kind == STRUT_TREE_LIST && !list))
-    return !source->broken &&
-           strut_refuse_form(reader, STRUT_KEY_COLLISION_BETWEEN, between, owner);
-  for (int k = 0; k < 2; k++)
-    if (!read_set(reader,
-                  !list ? between
-                  : k   ? between->first->next
-                        : between->first,
-                  owner, &pairs->group[k]))
-      return false;
-  pairs->count = add_pairs(reader, collision, pairs->group, NULL);
-  if (pairs->count <= MOST_PAIRS) return true;
-  return strut_report_error(reader, between->place, "%s stands for more than %d pairs of members",
-                            strut_owner_text(reader, owner), (int)MOST_PAIRS);
+/* `between` of a collision, or NULL. */
+static const strut_tree *between_of(const strut_source *source) {
+  return source->value ? strut_tree_find(source->value, "between", NULL) : NULL;
 }
 
-/* Puts all pairs in place of the collisions that were read, with their names. */
-static void replace_collisions(strut_reader *reader, const body_pairs *pairs, size_t given,
-                               size_t total) {
-  strut_scene *scene = reader->scene;
-  strut_things_read *read = &reader->things[STRUT_THING_COLLISION];
-  strut_collision *all = strut_keep_array(reader, total + 1, sizeof *all);
-  strut_source *source = strut_scratch_array(reader, total + 1, sizeof *source);
-  if (!all || !source) return;
-  size_t count = 0;
-  for (size_t i = 0; i < given; i++) {
-    if (pairs[i].many)
-      add_pairs(reader, &pairs[i].like, pairs[i].group, all + count);
-    else
-      all[count] = pairs[i].like;
-    for (size_t k = 0; k < pairs[i].count; k++)
-      source[count + k] = (strut_source){pairs[i].key, pairs[i].key->next,
-                                         pairs[i].many ? false : read->source[i].broken};
-    count += pairs[i].count;
+/* One `between` two sets of members. False: that was reported. */
+static bool add_between(strut_reader *reader, const strut_source *source,
+                        const strut_collision *collision, size_t more) {
+  const strut_tree *between = between_of(source), *set = between;
+  strut_owner owner = {"collision", collision->name};
+  const char *group[2];
+  bool list = between->kind == STRUT_TREE_LIST;
+  if (source->broken) return false;
+  if (list && between->count != 2)
+    return strut_refuse_form(reader, STRUT_KEY_COLLISION_BETWEEN, between, owner);
+  for (int k = 0; k < 2; k++) {
+    if (list) set = k ? between->first->next : between->first;
+    if (!read_set(reader, set, owner, &group[k])) return false;
   }
-  strut_name_map_free(&read->names);
-  strut_reserve_names(reader, &read->names, count);
-  for (size_t i = 0; i < count; i++) strut_add_name(reader, &read->names, all[i].name, i);
-  scene->collisions = all, scene->collision_count = count;
-  read->source = source;
+  return replace_collision(
+      reader, collision, group, source->key, between->place,
+      strut_scratch_text(reader, "%s stands for", strut_owner_text(reader, owner)), more);
 }
 
 void strut_read_bodies(strut_reader *reader) {
   strut_scene *scene = reader->scene;
+  strut_things_read *read = &reader->things[STRUT_THING_COLLISION];
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_COLLISIONS);
-  bool all = slot->key && slot->state == STRUT_ABSENT;
-  size_t given = scene->collision_count + all, total = 0;
-  bool many = all;
-  if (!given) return;
-  body_pairs *pairs = strut_scratch_array(reader, given, sizeof *pairs);
-  for (size_t i = 0; pairs && i < scene->collision_count; i++) {
-    if (!find_pairs(reader, &reader->things[STRUT_THING_COLLISION].source[i], &scene->collisions[i],
-                    &pairs[i])) {
-      reader->failed = true;
-      pairs[i].count = 0, pairs[i].many = true, pairs[i].group[0] = pairs[i].group[1] = "";
+  const strut_collision *given = scene->collisions;
+  const strut_source *source = read->source;
+  size_t count = scene->collision_count;
+  bool all = slot->key && slot->state == STRUT_ABSENT, many = all;
+  for (size_t i = 0; i < count; i++) many = many || between_of(&source[i]);
+  if (!many) return;
+  scene->collision_count = 0;
+  strut_name_map_free(&read->names);
+  if (!strut_reserve_things(reader, STRUT_THING_COLLISION, count)) return;
+  for (size_t i = 0; i < count; i++) {
+    if (between_of(&source[i])) {
+      if (!add_between(reader, &source[i], &given[i], count - i - 1)) reader->failed = true;
+      continue;
     }
-    many = many || pairs[i].many;
-    total += pairs[i].count;
+    strut_collision *kept =
+        strut_add_thing(reader, STRUT_THING_COLLISION, source[i].key, given[i].name);
+    *kept = given[i];
+    read->source[kept - scene->collisions].broken = source[i].broken;
   }
-  if (!pairs || !many) return;
-  if (all) {
-    body_pairs *last = &pairs[given - 1];
-    *last = (body_pairs){.like = usual_collision(scene), .key = slot->key, .many = true};
-    if (last->like.stiffness > 0.0 && last->like.thickness > 0.0)
-      last->count = add_pairs(reader, &last->like, last->group, NULL);
-    if (last->count > MOST_PAIRS)
-      strut_report_error(reader, slot->key->place, "these are more than %d pairs of members",
-                         (int)MOST_PAIRS);
-    if (last->count > MOST_PAIRS) return;
-    total += last->count;
-  }
-  replace_collisions(reader, pairs, given, total);
+  const char *const everything[2] = {NULL, NULL};
+  const strut_collision usual = usual_collision(scene);
+  if (all && usual.stiffness > 0.0 && usual.thickness > 0.0)
+    replace_collision(reader, &usual, everything, slot->key, slot->key->place, "these are", 0);
 }
