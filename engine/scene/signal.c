@@ -167,30 +167,31 @@ static void evaluate_other(const strut_signal *signals, const strut_signal_input
   }
 }
 
-void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t, double *value,
-                           double *rate) {
+/* In the signal's own time. */
+static inline void evaluate_at(const strut_signal *signals, const strut_signal_inputs *in,
+                               int32_t index, double t, double *value, double *rate) {
   const strut_signal *signal = &signals[index];
-  double turns = signal->frequency * (t - signal->start) + signal->phase;
-  if (signal->kind == STRUT_SINE && t >= signal->start && t < signal->stop)
-    evaluate_wave(signal, turns, value, rate);
-  else
-    evaluate_other(signals, NULL, index, t, turns, value, rate);
-}
-
-void strut_signal_follow_unlagged(const strut_signal *signals, const strut_signal_inputs *in,
-                                  int32_t index, double t, double *value, double *rate) {
-  const strut_signal *signal = &signals[index];
-  if (signal->trigger.kind != STRUT_TRIGGER_NONE) {
-    double since = in ? in->started[index] : (double)NAN;
-    *value = *rate = in ? 0.0 : (double)NAN;
-    if (!(t >= since)) return;
-    t -= since;
-  }
   double turns = signal->frequency * (t - signal->start) + signal->phase;
   if (signal->kind == STRUT_SINE && t >= signal->start && t < signal->stop)
     evaluate_wave(signal, turns, value, rate);
   else
     evaluate_other(signals, in, index, t, turns, value, rate);
+}
+
+void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t, double *value,
+                           double *rate) {
+  evaluate_at(signals, NULL, index, t, value, rate);
+}
+
+void strut_signal_follow_unlagged(const strut_signal *signals, const strut_signal_inputs *in,
+                                  int32_t index, double t, double *value, double *rate) {
+  if (signals[index].trigger.kind != STRUT_TRIGGER_NONE) {
+    double since = in ? in->started[index] : (double)NAN;
+    *value = *rate = in ? 0.0 : (double)NAN;
+    if (!(t >= since)) return;
+    t -= since;
+  }
+  evaluate_at(signals, in, index, t, value, rate);
 }
 
 void strut_signal_follow_unsampled(const strut_signal *signals, const strut_signal_inputs *in,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/mixed_bits.h"
 #include "engine/base/text.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/program/command/analyses.h"
@@ -27,14 +28,6 @@ typedef struct tradeoff_study {
   strut_arena arena;
   strut_tradeoff result;
 } tradeoff_study;
-
-/* Vigna's splitmix64: any seed works, and all machines draw the same numbers. */
-static double draw_uniform(uint64_t *seed) {
-  uint64_t z = (*seed += 0x9E3779B97F4A7C15u);
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 static size_t word_count(const char *text) {
   size_t count = 1;
@@ -100,7 +93,7 @@ static strut_status open_point(const strut_arguments *arguments, uint64_t *seed,
   strut_status status = overrides && texts ? STRUT_OK : strut_print_out_of_memory();
   for (size_t i = 0; i < set && status == STRUT_OK; i++) overrides[i] = arguments->overrides[i];
   for (size_t i = 0; i < varied && status == STRUT_OK; i++) {
-    write_drawn_value(arguments->varied[i].text, draw_uniform(seed), texts[i]);
+    write_drawn_value(arguments->varied[i].text, strut_draw_uniform(seed), texts[i]);
     overrides[set + i] = (strut_setting){.name = arguments->varied[i].name, .text = texts[i]};
   }
   if (status == STRUT_OK) {

@@ -340,14 +340,14 @@ static int32_t add_neuron(network *self, const char *end, const strut_signal *si
                     : -1;
 }
 
-/* bias + w1 x1 + w2 x2 + ..., and its tanh unless it is `linear`. */
-static strut_signal make_neuron(const network *self, bool linear) {
+/* The tanh of bias + w1 x1 + w2 x2 + ... */
+static strut_signal make_neuron(const network *self) {
   strut_program_builder b = {.reader = self->reader};
   strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
   strut_build(&b, "#", self->weight[self->before], STRUT_DIM_NONE);
   for (size_t i = 0; i < self->before; i++)
     strut_build(&b, "#v*+", self->weight[i], STRUT_DIM_NONE, self->first + (int32_t)i);
-  if (!linear) strut_build(&b, "t");
+  strut_build(&b, "t");
   signal.program = strut_built(&b);
   return signal;
 }
@@ -393,20 +393,6 @@ static char first_of(const char *line) {
   return first == '\n' ? '\0' : first;
 }
 
-/* Lines with numbers, in a row, are a layer. */
-static size_t count_layers(const char *text) {
-  size_t layers = 0;
-  bool within = false;
-  for (const char *line = text; line; line = strchr(line, '\n')) {
-    if (*line == '\n') line++;
-    char first = first_of(line);
-    if (first == '#') continue;
-    layers += first && !within;
-    within = first != '\0';
-  }
-  return layers;
-}
-
 /* A damaged file may have NUL bytes, at which a text would end. */
 static bool is_text(network *self, const strut_safe_text *text) {
   const char *end = memchr(text->text, '\0', text->length);
@@ -416,7 +402,6 @@ static bool is_text(network *self, const strut_safe_text *text) {
 
 /* All neurons of the text; those of the last layer are the last signals. */
 static bool read_layers(network *self, char *text) {
-  size_t layers = count_layers(text);
   char *next = text;
   for (char *line; (line = next); self->line++) {
     next = strchr(line, '\n');
@@ -426,10 +411,9 @@ static bool read_layers(network *self, char *text) {
     if (!first || first == '#') continue;
     line[strcspn(line, "#")] = '\0';
     char end[60];
-    bool linear = self->keys.last == 1 && self->layers + 1 == layers;
     if (self->neurons++ == MOST_NEURONS) return fail_network(self, "more than 1000 neurons", NULL);
     if (!read_weights(self, line)) return false;
-    strut_signal signal = make_neuron(self, linear);
+    strut_signal signal = make_neuron(self);
     snprintf(end, sizeof end, "%zu_%zu", self->layers + 1, self->width + 1);
     int32_t index = add_neuron(self, end, &signal);
     if (index < 0) return false;
@@ -437,7 +421,10 @@ static bool read_layers(network *self, char *text) {
   }
   if (self->neurons == 0) self->line = 1;
   if (self->neurons == 0) return fail_network(self, "there is no neuron in this file", NULL);
-  return end_layer(self);
+  if (!end_layer(self)) return false;
+  for (size_t i = 0; i < self->before && self->keys.last == 1; i++) /* the last layer is linear */
+    self->reader->signals[(size_t)self->first + i].program.length--;
+  return true;
 }
 
 /* Each input is a signal, so that neurons share it. */

@@ -268,15 +268,10 @@ static void put_word(strut_writer *writer, const char *text) {
 }
 
 static void put_tree(strut_writer *writer, const strut_tree *node) {
-  static const char *const kinds[] = {"scalar", "list", "map"};
-  strut_put(writer, kinds[node->kind]);
-  strut_put(writer, node->quoted ? " quoted " : " ");
-  if (node->kind == STRUT_TREE_SCALAR) {
-    put_word(writer, node->text);
-    return;
-  }
-  put_number(writer, (double)node->count);
-  for (const strut_tree *child = node->first; child; child = child->next) put_tree(writer, child);
+  char *text = strut_tree_write(node, "");
+  writer->out.failed = writer->out.failed || !text;
+  if (text) put_word(writer, text);
+  strut_release(text);
 }
 
 static void put_axis(strut_writer *writer, const strut_study_axis *axis) {
