@@ -214,86 +214,46 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
 /* Bases with more vectors, or more numbers, than these are not computed. */
 enum { MOST_VECTORS = 200, MOST_NUMBERS = 4000000 };
 
-/* T = U S V' of the tall one of A and A'. */
-typedef struct tall {
-  size_t rows, columns;
-  bool turned; /* T = A' */
-  double *u, *v, *s, *work;
-} tall;
-
-static bool allocate_tall(const strut_equilibrium_matrix *matrix, strut_arena *arena, tall *self) {
-  self->turned = matrix->columns > matrix->rows;
-  self->rows = (size_t)(self->turned ? matrix->columns : matrix->rows);
-  self->columns = (size_t)(self->turned ? matrix->rows : matrix->columns);
-  return STRUT_NUMBERS(arena, self->rows * self->columns, &self->u) &&
-         STRUT_NUMBERS(arena, self->columns * self->columns, &self->v) &&
-         STRUT_NUMBERS(arena, self->columns, &self->s, &self->work);
-}
-
-static void fill_tall(const strut_equilibrium_matrix *matrix, tall *self) {
-  for (int32_t j = 0; j < matrix->columns; j++)
-    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++) {
-      size_t row = (size_t)(self->turned ? j : matrix->row[k]);
-      size_t column = (size_t)(self->turned ? matrix->row[k] : j);
-      self->u[row * self->columns + column] = matrix->value[k];
-    }
-}
-
-/* Not by GSL's one-sided Jacobi: it stops early where several values are zero. */
-static int decompose(tall *self) {
-  gsl_matrix_view u = gsl_matrix_view_array(self->u, self->rows, self->columns);
-  gsl_matrix_view v = gsl_matrix_view_array(self->v, self->columns, self->columns);
-  gsl_vector_view s = gsl_vector_view_array(self->s, self->columns);
-  gsl_vector_view work = gsl_vector_view_array(self->work, self->columns);
-  return gsl_linalg_SV_decomp(&u.matrix, &v.matrix, &s.vector, &work.vector);
-}
-
-static void decide_rank(const tall *self, strut_null_spaces *spaces) {
-  int32_t rank = 0, count = (int32_t)self->columns;
-  spaces->largest = self->s[0];
-  while (rank < count && self->s[rank] > STRUT_RANK_TOLERANCE * self->s[0]) rank++;
+static void decide_rank(const double *value, int32_t count, strut_null_spaces *spaces) {
+  int32_t rank = 0;
+  spaces->largest = value[0];
+  while (rank < count && value[rank] > STRUT_RANK_TOLERANCE * value[0]) rank++;
   spaces->rank = rank;
-  spaces->kept = rank > 0 ? self->s[rank - 1] : 0.0;
-  spaces->dropped = rank < count ? self->s[rank] : 0.0;
-  for (int32_t i = 0; i < rank; i++) spaces->weak += self->s[i] < STRUT_WEAK * self->s[0];
+  spaces->kept = rank > 0 ? value[rank - 1] : 0.0;
+  spaces->dropped = rank < count ? value[rank] : 0.0;
+  for (int32_t i = 0; i < rank; i++) spaces->weak += value[i] < STRUT_WEAK * value[0];
 }
 
-/* The right singular vectors of the values dropped, row by row. */
-static double *right_null(const tall *self, size_t rank, strut_arena *arena) {
-  size_t n = self->columns, count = n - rank;
-  double *basis = strut_arena_allocate(arena, count * n + 1, sizeof *basis);
-  for (size_t i = 0; basis && i < count; i++)
-    for (size_t k = 0; k < n; k++) basis[i * n + k] = self->v[k * n + rank + i];
-  return basis;
-}
-
-/* Basis orthogonal to the left singular vectors kept: the last columns of the Q of their QR. */
-static double *left_null(const tall *self, size_t rank, strut_arena *scratch, strut_arena *arena) {
-  size_t m = self->rows, count = m - rank;
-  double *basis = strut_arena_allocate(arena, count * m + 1, sizeof *basis);
-  double *qr = strut_arena_allocate(scratch, m * rank + 1, sizeof *qr);
-  double *tau = strut_arena_allocate(scratch, rank + 1, sizeof *tau);
-  double *unit = strut_arena_allocate(scratch, m, sizeof *unit);
-  if (!basis || !qr || !tau || !unit) return NULL;
-  for (size_t i = 0; i < m; i++)
-    for (size_t k = 0; k < rank; k++) qr[i * rank + k] = self->u[i * self->columns + k];
-  if (rank > 0) {
-    gsl_matrix_view view = gsl_matrix_view_array(qr, m, rank);
-    gsl_vector_view scale = gsl_vector_view_array(tau, rank);
-    if (gsl_linalg_QR_decomp(&view.matrix, &scale.vector) != 0) return NULL;
-  }
-  for (size_t i = 0; i < count; i++) {
-    memset(unit, 0, m * sizeof *unit);
-    unit[rank + i] = 1.0;
-    gsl_vector_view e = gsl_vector_view_array(unit, m);
-    if (rank > 0) {
-      gsl_matrix_view view = gsl_matrix_view_array(qr, m, rank);
-      gsl_vector_view scale = gsl_vector_view_array(tau, rank);
-      gsl_linalg_QR_Qvec(&view.matrix, &scale.vector, &e.vector);
+/*
+ * Orthonormal rows that A, or its transpose, maps to zero: the right singular vectors of the values dropped. The rank
+ * is decided by those of A. Not by GSL's one-sided Jacobi: it stops early where several values are zero.
+ */
+static strut_status find_null(const strut_equilibrium_matrix *matrix, bool transposed,
+                              strut_arena *arena, strut_null_spaces *spaces, double **basis,
+                              strut_error *error) {
+  size_t n = (size_t)(transposed ? matrix->rows : matrix->columns),
+         other = (size_t)(transposed ? matrix->columns : matrix->rows);
+  strut_arena scratch = {0};
+  gsl_matrix *u = strut_arena_matrix(&scratch, n > other ? n : other, n),
+             *v = strut_arena_matrix(&scratch, n, n);
+  gsl_vector *value = strut_arena_vector(&scratch, n), *work = strut_arena_vector(&scratch, n);
+  bool made = u && v && value && work, good = made;
+  for (int32_t j = 0; j < matrix->columns && made; j++)
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++) {
+      size_t row = (size_t)matrix->row[k], column = (size_t)j;
+      gsl_matrix_set(u, transposed ? column : row, transposed ? row : column, matrix->value[k]);
     }
-    memcpy(basis + i * m, unit, m * sizeof *unit);
-  }
-  return basis;
+  if (made) good = gsl_linalg_SV_decomp(u, v, value, work) == 0;
+  if (good && !transposed) decide_rank(value->data, (int32_t)(n < other ? n : other), spaces);
+  size_t count = good ? n - (size_t)spaces->rank : 0;
+  if (good) made = (*basis = strut_arena_allocate(arena, count * n + 1, sizeof **basis));
+  for (size_t i = 0; i < count * n && made; i++)
+    (*basis)[i] = gsl_matrix_get(v, i % n, (size_t)spaces->rank + i / n);
+  strut_arena_free(&scratch);
+  if (!made) return strut_no_memory(error, "");
+  return good ? STRUT_OK
+              : strut_fail(error, STRUT_SINGULAR,
+                           "the singular values of the equilibrium matrix did not converge");
 }
 
 /* Without rows or columns: rank 0, and unit vectors. */
@@ -314,26 +274,9 @@ strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *matrix, str
                                      strut_null_spaces *spaces, strut_error *error) {
   *spaces = (strut_null_spaces){.dense = true};
   if (matrix->rows == 0 || matrix->columns == 0) return trivial(matrix, arena, spaces, error);
-  strut_arena scratch = {0};
-  strut_status status = STRUT_OK;
-  tall t = {0};
-  if (!allocate_tall(matrix, &scratch, &t)) {
-    status = strut_no_memory(error, "");
-  } else {
-    fill_tall(matrix, &t);
-    if (decompose(&t) != 0)
-      status = strut_fail(error, STRUT_SINGULAR,
-                          "the singular values of the equilibrium matrix did not converge");
-  }
-  if (status == STRUT_OK) {
-    decide_rank(&t, spaces);
-    size_t rank = (size_t)spaces->rank;
-    double *right = right_null(&t, rank, arena), *left = left_null(&t, rank, &scratch, arena);
-    spaces->states = matrix->columns - spaces->rank, spaces->motions = matrix->rows - spaces->rank;
-    spaces->state = t.turned ? left : right, spaces->motion = t.turned ? right : left;
-    if (!right || !left) status = strut_no_memory(error, "");
-  }
-  strut_arena_free(&scratch);
+  strut_status status = find_null(matrix, false, arena, spaces, &spaces->state, error);
+  if (status == STRUT_OK) status = find_null(matrix, true, arena, spaces, &spaces->motion, error);
+  spaces->states = matrix->columns - spaces->rank, spaces->motions = matrix->rows - spaces->rank;
   return status;
 }
 
