@@ -485,9 +485,15 @@ bool strut_path_walk_step(strut_path_walk *walk) {
   return false;
 }
 
-/* The tangent at the start, with growing load. */
+/* The tangent at the start: with growing load; if it moves the structure in one way only, so that it does work. */
 static bool first_tangent(strut_path_walk *walk) {
-  return strut_path_tangent(&walk->system, walk->y, walk->upward, walk->tangent);
+  strut_path_system *system = &walk->system;
+  int32_t first;
+  if (strut_path_tangent(system, walk->y, walk->upward, walk->tangent)) return true;
+  if (strut_path_find_mechanisms(system, walk->y, &first) > 1) return false;
+  for (int32_t i = 0; i < system->n; i++) walk->trial[i] = -system->latest.slope[i];
+  walk->trial[system->n] = 0;
+  return strut_path_tangent(system, walk->y, walk->trial, walk->tangent);
 }
 
 /* Corrects the start to all digits: the descent that found y used doubles. */
