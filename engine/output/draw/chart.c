@@ -381,7 +381,9 @@ static void draw_mark(const chart *self, const strut_label *mark) {
     label.dot = label.ring = false;
     label.angle = (above ? -0.5 : 0.5) * STRUT_PI;
     label.gap = STRUT_BEYOND_SIZE + 1;
-    strut_draw_beyond(self->canvas, label.at[0], label.at[1], (const double[2]){0, above ? -1 : 1});
+    strut_draw_arrow(self->canvas, label.at[0], label.at[1] + (above ? 1 : -1) * STRUT_BEYOND_SIZE,
+                     label.at[0], label.at[1], STRUT_BEYOND_SIZE,
+                     (strut_pen){.colour = strut_grey(0.15)});
   }
   strut_draw_label(self->canvas, &label);
 }

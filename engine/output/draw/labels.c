@@ -60,11 +60,6 @@ static strut_box widened(strut_box box, double by) {
   return (strut_box){box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
 }
 
-static bool overlap(const strut_box *first, const strut_box *second) {
-  return first->x < second->x + second->width && second->x < first->x + first->width &&
-         first->y < second->y + second->height && second->y < first->y + first->height;
-}
-
 /* The point of a box nearest to `at`, and its distance. */
 static double nearest_point(const strut_box *box, const double at[2], double point[2]) {
   point[0] = fmin(fmax(at[0], box->x), box->x + box->width);
@@ -87,14 +82,14 @@ typedef struct search {
 
 /* True if it is inside and over no text. */
 static bool is_free(const search *self, const strut_box *box) {
-  const strut_box *in = &self->inside;
-  const strut_box around = {box->x - BESIDE, box->y - BELOW, box->width + 2 * BESIDE,
-                            box->height + 2 * BELOW};
-  if (box->x < in->x || box->y < in->y || box->x + box->width > in->x + in->width ||
-      box->y + box->height > in->y + in->height)
+  const strut_box *in = &self->inside, *t = self->labels->texts;
+  double right = box->x + box->width, bottom = box->y + box->height;
+  if (box->x < in->x || box->y < in->y || right > in->x + in->width || bottom > in->y + in->height)
     return false;
-  for (size_t i = 0; i < self->labels->text_count; i++)
-    if (overlap(&around, &self->labels->texts[i])) return false;
+  for (; t < self->labels->texts + self->labels->text_count; t++)
+    if (box->x - BESIDE < t->x + t->width && t->x < right + BESIDE &&
+        box->y - BELOW < t->y + t->height && t->y < bottom + BELOW)
+      return false;
   return true;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What explains a figure: keys, markers of series, scales, marks of what lies beyond them. */
+/* What explains a figure: keys, markers of series, scales. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,16 +28,6 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
     strut_draw_circle(canvas, x, y, size, &fill, &edge);
   else
     strut_draw_polygon(canvas, (const double(*)[2])at, (size_t)count, &fill, &edge);
-}
-
-void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2]) {
-  const double size = STRUT_BEYOND_SIZE, half = 0.45 * size;
-  const double foot[2] = {x - size * out[0], y - size * out[1]};
-  const double corners[3][2] = {{x, y},
-                                {foot[0] + half * out[1], foot[1] + half * out[0]},
-                                {foot[0] - half * out[1], foot[1] - half * out[0]}};
-  strut_draw_polygon(canvas, corners, 3, &(strut_fill){.colour = strut_grey(0.15)},
-                     &(strut_pen){.colour = strut_grey(1), .width = 0.4});
 }
 
 /* ---- scales ---- */
@@ -69,7 +59,7 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
   strut_tick_set set;
   double line = strut_text_box(canvas, "0", font).height;
   const strut_box strip = {box.x + 8, box.y + line + 2, box.width - 16, BAR};
-  const double bottom = strip.y + BAR, right = strip.x + strip.width;
+  const double bottom = strip.y + BAR, right = strip.x + strip.width, middle = strip.y + 0.5 * BAR;
   strut_axis_ticks(&axis, (int)fmax(3, box.width / 40), &set);
   for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
     double x = strip.x + strip.width * i / SHADES;
@@ -81,8 +71,9 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
   strut_draw_box(canvas, strip, NULL, &pen);
   for (int end = -1; end < 2; end += 2) /* values beyond the ends */
     if (end > 0 ? scale->beyond.above : scale->beyond.below)
-      strut_draw_beyond(canvas, (end > 0 ? right : strip.x) + end * STRUT_BEYOND_SIZE,
-                        strip.y + 0.5 * BAR, (const double[2]){end, 0});
+      strut_draw_arrow(canvas, end > 0 ? right : strip.x, middle,
+                       (end > 0 ? right : strip.x) + end * STRUT_BEYOND_SIZE, middle,
+                       STRUT_BEYOND_SIZE, pen);
   for (size_t i = 0; i < set.count; i++) {
     double x = strip.x + strip.width * (set.at[i] - scale->low) / (scale->high - scale->low);
     strut_draw_segment(canvas, x, bottom, x, bottom + BAR_TICK, pen);

@@ -82,9 +82,7 @@ void strut_draw_yardstick(strut_canvas *canvas, double left, double bottom, doub
 /** Draws a scale of colours with its ticks below and its name above. */
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale);
 #define STRUT_SCALE_HEIGHT 34.0
-/** A mark for what lies beyond a frame's edge: a triangle STRUT_BEYOND_SIZE high, its tip at x, y, towards `out`. */
-void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2]);
-#define STRUT_BEYOND_SIZE 5.0
+#define STRUT_BEYOND_SIZE 5.0 /* an arrowhead for what lies beyond a frame or a scale [pt] */
 
 /* ---- charts (axes.c, chart.c) ---- */
 

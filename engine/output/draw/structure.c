@@ -376,13 +376,6 @@ static void draw_name(const drawing *d, const double at[2], double angle, double
                                              .inside = d->axes->frame});
 }
 
-/* Names stand outside of a structure rather than inside: away from its middle, else at the upper right. */
-static double find_outwards(const double at[2], const double middle[2]) {
-  double x = strut_settle_coordinate(at[0]) - strut_settle_coordinate(middle[0]);
-  double y = strut_settle_coordinate(middle[1]) - strut_settle_coordinate(at[1]);
-  return hypot(x, y) > NEAR_MIDDLE ? atan2(y, x) : 0.25 * STRUT_PI;
-}
-
 /* True if names cover little of what is seen. */
 static bool names_fit(const drawing *d, const strut_panel *view) {
   static const double COVERED = 0.22; /* of a view, by names */
@@ -397,13 +390,17 @@ static bool names_fit(const drawing *d, const strut_panel *view) {
   return covered <= seen;
 }
 
+/* Names stand outside of a structure rather than inside: away from its middle, else at the upper right. */
 static void draw_names(const drawing *d) {
   const strut_scene *scene = d->model->scene;
   double middle[2], at[2], ends[2][2];
   find_middle(d, middle);
   for (size_t i = 0; i < scene->node_count; i++) {
     strut_axes_point(d->axes, d->q + 2 * i, at);
-    draw_name(d, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
+    double x = strut_settle_coordinate(at[0]) - strut_settle_coordinate(middle[0]);
+    double y = strut_settle_coordinate(middle[1]) - strut_settle_coordinate(at[1]);
+    draw_name(d, at, hypot(x, y) > NEAR_MIDDLE ? atan2(y, x) : 0.25 * STRUT_PI, NODE_GAP,
+              scene->nodes[i].name);
   }
   for (size_t j = 0; j < scene->member_count && d->style->member_names; j++) {
     find_longest(d, j, ends); /* the name is drawn at its middle */

@@ -80,21 +80,18 @@ static void add_panel(sheet *self, const strut_compare_column *column) {
   shape->ground = shape->names = true;
 }
 
+/* The kinds of members that are there, and those that are driven. */
 static void add_keys(sheet *self) {
   static const char *const kinds[] = {
-      [STRUT_BAR] = "bar", [STRUT_SPRING] = "spring", [STRUT_CABLE] = "cable"};
-  const char *texts[] = {NULL, NULL, NULL, NULL};
-  for (size_t i = 0; i < self->count; i++) {
-    const strut_scene *scene = self->columns[i].model->scene;
-    for (size_t j = 0; j < scene->member_count; j++) {
-      strut_member_kind kind = scene->members[j].kind;
-      bool driven = strut_member_is_driven(scene, j);
-      texts[driven ? DRIVEN : kind] = driven ? "driven" : kinds[kind];
-    }
-  }
+      [STRUT_BAR] = "bar", [STRUT_SPRING] = "spring", [STRUT_CABLE] = "cable", [DRIVEN] = "driven"};
   for (int k = 0; k <= DRIVEN; k++)
-    strut_add_key(&self->figure, STRUT_KEY_LINE, strut_kind_pen((strut_member_kind)k, k == DRIVEN),
-                  texts[k]);
+    for (const strut_compare_column *c = self->columns; c < self->columns + self->count; c++)
+      for (size_t j = 0; j < c->model->scene->member_count; j++) {
+        strut_member_kind kind = c->model->scene->members[j].kind;
+        bool driven = strut_member_is_driven(c->model->scene, j);
+        if ((driven ? DRIVEN : (int)kind) == k)
+          strut_add_key(&self->figure, STRUT_KEY_LINE, strut_kind_pen(kind, driven), kinds[k]);
+      }
 }
 
 /* The name of all scenes; "" where they differ. */
