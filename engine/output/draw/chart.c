@@ -73,10 +73,7 @@ void strut_map_limits(const double *at, size_t count, double limits[2]) {
 /* ---- the legend ---- */
 
 static void add_item(strut_figure *legend, strut_key_item item) {
-  size_t before = legend->key_count;
-  if (!item.text || !*item.text) return;
-  strut_key_item *added = strut_add_key(legend, item.sign, item.pen, item.text);
-  if (legend->key_count > before) *added = item;
+  if (item.text && *item.text) *strut_add_key(legend, item.sign, item.pen, item.text) = item;
 }
 
 static void add_area(strut_figure *legend, strut_fill fill, const char *text) {
@@ -101,16 +98,17 @@ static const strut_fill band_fill = {.colour = {0.86, 0.86, 0.86, 1}};
 
 void strut_panel_legend(const strut_panel *panel, strut_figure *legend) {
   for (size_t i = 0; i < panel->series_count; i++) {
+    const strut_series *series = &panel->series[i];
+    bool dots = series->kind == STRUT_SERIES_DOTS;
     strut_pen pen = pen_of(panel, i);
-    strut_key_sign sign = panel->series[i].bar > 0 ? STRUT_KEY_AREA : STRUT_KEY_LINE;
-    bool dots = panel->series[i].kind == STRUT_SERIES_DOTS;
-    if (dots) sign = STRUT_KEY_DOT;
-    add_item(legend, (strut_key_item){.sign = sign,
+    add_item(legend, (strut_key_item){.sign = dots              ? STRUT_KEY_DOT
+                                              : series->bar > 0 ? STRUT_KEY_AREA
+                                                                : STRUT_KEY_LINE,
                                       .pen = dots ? (strut_pen){.width = 0} : pen,
                                       .fill = {.colour = pen.colour},
-                                      .marked = has_markers(panel, &panel->series[i]),
+                                      .marked = has_markers(panel, series),
                                       .look = look_of(panel, i),
-                                      .text = panel->series[i].label});
+                                      .text = series->label});
   }
   for (size_t i = 0; i < panel->band_count; i++) add_area(legend, band_fill, panel->bands[i].label);
   if (panel->map) name_cells(panel->map, legend);
