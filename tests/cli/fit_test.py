@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Fits of parameters to measured numbers: the crawler's film, friction of an axis, a silicone member in a testing
-# machine, a truss, frequencies of a prestressed string; all of synthetic data that other programs (here, Python)
-# have made. Parameters that act alike, models that are wrong, starts that end elsewhere are refused, never given an
-# interval. The same bytes whatever the threads, kills and workers.
-#
+# Fits to numbers that Python makes: the crawler's film, friction of an axis, a silicone member in a testing machine, a
+# truss, a string. Parameters that act alike, models that are wrong, starts that end elsewhere are refused, never given
+# an interval. The same bytes whatever the threads, kills and workers.
 # --long: intervals of 200 noises hold in 90 to 98 % of them; 50 starts within 50 % (half an hour).
 import math
 import os

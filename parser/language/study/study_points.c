@@ -294,45 +294,38 @@ static bool read_parameter(strut_study_reader *reader, strut_study_axis *axis,
   return fine && kinds > 0;
 }
 
-/* One row of a matrix of correlations. */
-static bool read_correlations(strut_study_reader *reader, const strut_tree *row, size_t count,
-                              double *to) {
-  strut_reader *r = reader->reader;
-  strut_quantity q;
-  if (row->kind != STRUT_TREE_LIST || row->count != count)
-    return strut_report_error(r, row->place,
-                              "expected a list of %zu numbers, one for each parameter, found %s",
-                              count, strut_found(r, row));
-  for (const strut_tree *item = row->first; item; item = item->next) {
-    if (!strut_read_any_quantity(r, item, "correlation", sample_owner, "a number", &q))
-      return false;
-    *to++ = q.value;
-  }
-  return true;
+/* Is this a list of so many, one for each parameter? */
+static bool is_list_of(strut_reader *reader, const strut_tree *list, size_t count,
+                       const char *what) {
+  return (list->kind == STRUT_TREE_LIST && list->count == count) ||
+         strut_report_error(reader, list->place,
+                            "expected a list of %zu %s, one for each parameter, found %s", count,
+                            what, strut_found(reader, list));
 }
 
 /* The factor of the correlation of the parameters; *factor: NULL without one. False: that was reported. */
 static bool read_factor(strut_study_reader *reader, const strut_slot *slot, size_t count,
                         double **factor) {
+  strut_reader *r = reader->reader;
+  bool right = true;
+  size_t k = 0;
   *factor = NULL;
   if (slot->state != STRUT_GIVEN) return true;
-  const strut_tree *rows = slot->value;
-  if (rows->kind != STRUT_TREE_LIST || rows->count != count)
-    return strut_report_error(reader->reader, rows->place,
-                              "expected a list of %zu rows, one for each parameter, found %s",
-                              count, strut_found(reader->reader, rows));
-  double *matrix = strut_study_allocate(reader, count * count, sizeof *matrix);
+  if (!is_list_of(r, slot->value, count, "rows")) return false;
+  double *matrix = *factor = strut_study_allocate(reader, count * count, sizeof *matrix);
   if (!matrix) return false;
-  size_t i = 0;
-  for (const strut_tree *row = rows->first; row; row = row->next)
-    if (!read_correlations(reader, row, count, matrix + count * i++)) return false;
-  bool right = true;
-  for (i = 0; i < count; i++)
+  for (const strut_tree *row = slot->value->first; row; row = row->next) {
+    if (!is_list_of(r, row, count, "numbers")) return false;
+    for (const strut_tree *item = row->first; item; item = item->next)
+      if (!strut_read_number(r, item, "correlation", sample_owner, STRUT_DIM_NONE, STRUT_RANGE_ANY,
+                             &matrix[k++]))
+        return false;
+  }
+  for (size_t i = 0; i < count; i++)
     for (size_t j = 0; j <= i; j++)
       right = right && matrix[i * count + j] == (i == j ? 1.0 : matrix[j * count + i]);
-  *factor = matrix;
   return (right && strut_correlation_factor(count, matrix)) ||
-         strut_report_error(reader->reader, rows->place,
+         strut_report_error(r, slot->value->place,
                             "'correlation' must be symmetric and positive definite, with 1 on its "
                             "diagonal");
 }
