@@ -92,7 +92,7 @@ class Simulations(unittest.TestCase):
         self.assertRaisesRegex(TypeError, "unexpected keyword", self.scene.simulation, stepp="1 ms")
 
     def test_a_step_alone_takes_a_method_that_the_friction_allows(self):
-        for keys in ({"solver": {"accuracy": 0.01}}, {}):
+        for keys in ({"solver": {"accuracy": 0.01, "integrator": "rk4"}}, {"solver": {"step": 1e-4}}, {}):
             rest = {key: value for key, value in self.scene.to_dict().items() if key != "solver"}
             strut.Scene.from_dict(rest | keys).simulation(step="0.1 ms", friction_law="coulomb").advance(1)
 

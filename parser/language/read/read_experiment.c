@@ -391,7 +391,8 @@ void strut_read_experiment(strut_reader *reader) {
       (reader->purpose == STRUT_FOR_RUN || reader->purpose == STRUT_FOR_RUN_STEP_LATER) &&
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER)->state == STRUT_ABSENT;
   if (experiment->accuracy_assumed) experiment->accuracy = STRUT_USUAL_ACCURACY;
-  experiment->integrator_named = strut_given(&reader->solver, STRUT_KEY_SOLVER_INTEGRATOR) != NULL;
+  bool named = strut_given(&reader->solver, STRUT_KEY_SOLVER_INTEGRATOR);
+  experiment->integrator_named = named && !(experiment->accuracy > 0.0); /* which chooses one */
   choose_settling_step(reader);
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))
