@@ -249,7 +249,7 @@ static const double LARGEST_SIZE = 1e100; /* [m]: sums of squares of it are numb
 static const double LEAST_STEP = 1e-300;  /* [s] */
 static const double IDLE_STEP = 1e-3;     /* step where nothing limits it [s] */
 
-const char *strut_form_source_name(strut_form_source source) {
+static const char *form_source_name(strut_form_source source) {
   static const char *const names[] = {"scene", "densities", "lengths", "prestress"};
   assert((size_t)source < sizeof names / sizeof names[0]);
   return names[source];
@@ -445,15 +445,6 @@ static strut_status find(strut_former *former, strut_error *error) {
   return status == STRUT_OK ? add_run(former, error) : status;
 }
 
-/* Distance of every node from its drawn position. */
-static double moved_from(const double *drawn, const strut_scene *scene) {
-  double most = 0;
-  for (size_t i = 0; i < scene->node_count; i++)
-    most = fmax(most, hypot(scene->nodes[i].position[0] - drawn[2 * i],
-                            scene->nodes[i].position[1] - drawn[2 * i + 1]));
-  return most;
-}
-
 /* Shapes drawn for another form mean nothing now. */
 static void drop_shapes(strut_scene *scene) {
   for (size_t i = 0; i < scene->configuration_count; i++) {
@@ -474,7 +465,7 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
     if (!strut_member_is_special(member)) continue;
     return strut_fail(error, STRUT_BAD_SCENE,
                       "form finding by %s knows straight members with a linear law only: %s %s",
-                      strut_form_source_name(from), member->name,
+                      form_source_name(from), member->name,
                       member->guide_count ? "runs over guides" : "has another law");
   }
   static const strut_thing others[] = {STRUT_THING_COLLISION, STRUT_THING_DISTANCE,
@@ -485,7 +476,7 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
         return strut_fail(
             error, STRUT_BAD_SCENE,
             "form finding by %s knows straight members with a linear law only: %s is a %s",
-            strut_form_source_name(from), strut_thing_name(scene, others[k], i),
+            form_source_name(from), strut_thing_name(scene, others[k], i),
             others[k] == STRUT_THING_LOAD ? "moment" : strut_thing_at(others[k])->word);
   return STRUT_OK;
 }
@@ -496,12 +487,11 @@ static void measure_member(const strut_scene *scene, const strut_model *model, s
   const strut_member *member = &scene->members[j];
   strut_rest rest = {0};
   double length = strut_form_length(scene, j), force = 0;
-  if (!strut_member_rest(scene, j, &rest)) {
-    force = 0;
-  } else if (model && strut_element_of_member(&model->elements, (int32_t)j)) {
+  bool known = strut_member_rest(scene, j, &rest);
+  if (known && model && strut_element_of_member(&model->elements, (int32_t)j)) {
     length = strut_member_path_length(model, (int32_t)j, model->start);
     force = strut_member_elastic_tension(model, model->members.rest, (int32_t)j, model->start);
-  } else {
+  } else if (known) {
     force = rest.stiffness * (length - rest.length);
     if (member->kind == STRUT_CABLE && force < 0) force = 0;
   }
@@ -555,7 +545,8 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
     if (status == STRUT_OK) status = find(&f, error);
   }
   if (status == STRUT_OK) {
-    form->moved = moved_from(drawn, scene);
+    for (size_t i = 0; i < scene->node_count; i++)
+      form->moved = fmax(form->moved, strut_distance(drawn + 2 * i, scene->nodes[i].position));
     if (form->moved > 0) drop_shapes(scene);
     status = measure_members(scene, form, error);
   }
@@ -584,7 +575,7 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_form *form = of->outer->at;
                   size_t j = of->index)
 
 #define FORM(X)                                                                                    \
-  X("from", "", TEXT(strut_form_source_name(form->from)), "what was given", .label = {"form by"})  \
+  X("from", "", TEXT(form_source_name(form->from)), "what was given", .label = {"form by"})        \
   X("moved", "m", NUMBER(form->moved), "largest displacement of a node from where it was drawn",   \
     .label = {"displacement"})                                                                     \
   X("residual", "N", NUMBER(form->residual), "largest net force on a free coordinate",             \

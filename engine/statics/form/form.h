@@ -15,9 +15,6 @@ typedef enum strut_form_source {
   STRUT_FORM_PRESTRESS  /* the drawn shape stays; forces that hold it give the rest lengths */
 } strut_form_source;
 
-/** "scene", "densities", "lengths", "prestress". */
-STRUT_API const char *strut_form_source_name(strut_form_source source);
-
 /** The objective that selects one state of prestress among many. */
 typedef enum strut_form_objective {
   STRUT_FORM_LARGEST, /* the largest magnitude of a force is least, then the sum of magnitudes */
