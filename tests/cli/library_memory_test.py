@@ -27,8 +27,8 @@ HOPPER, PENTAGON = f"{HERE}/hopper.yaml", f"{HERE}/pentagon.yaml"
 ABORTING = "libglib:libpango:libfontconfig:libgfortran"
 WITH_HDF5 = ABORTING + ":libhdf5:libc.so"
 # cairo 1.16 dereferences NULL while it finishes a large figure; GLib ends where the loader has no memory for its thread;
-# fontconfig copies what expat had no memory for
-CRASHING = WITH_HDF5 + ":libcairo:ld-linux:libexpat"
+# fontconfig copies what expat had no memory for; pixman writes to NULL while it is loaded
+CRASHING = WITH_HDF5 + ":libcairo:libpixman:ld-linux:libexpat"
 COMMANDS = {  # name: (words, folders and files to remove before, libraries that are spared)
     "run": (["run", HOPPER, "--set", "seconds=0.1", "-o", "out", "--quiet"], WITH_HDF5),
     "sweep": (["sweep", "study.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
