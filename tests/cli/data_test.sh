@@ -1,7 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measured data: files of every form, signals, laws and positions of them, results that keep them, studies, and
-# files that nobody meant.
+# Measured data: files of every form, signals, laws and positions of them, results, studies; files that nobody meant.
 . "$(dirname "$0")/lib.sh"
 
 # ---- one table in many forms ----

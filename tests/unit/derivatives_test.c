@@ -59,7 +59,6 @@ TEST(formulas) {
   expect(d[2][2], 2.0, 1e-2);
 }
 
-/* Beside the point the function fails, and says why. */
 TEST(a_point_that_fails_says_why) {
   const strut_derivatives_parameter by[] = {usual[0], usual[1], {3.0, 0.0, 9.0, 0.0}};
   strut_derivative d[OUTPUTS][COUNT];
@@ -82,7 +81,6 @@ TEST(kinks) {
   assert_string_equal(strut_derivative_words(d[3][0].verdict), "not differentiable here");
 }
 
-/* A jump is not smooth at any step; what rounding hides has its error; a count is exact. */
 TEST(jumps_and_what_rounding_hides) {
   strut_derivative d[OUTPUTS][COUNT];
   find(usual, d);

@@ -8,7 +8,7 @@
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Of the runs whose results are differentiated, at most; of their orbits, where they stop once they are steady. */
-static const double TIGHT = 1e-9, ORBIT = 1e-6;
+static const double TIGHT = 1e-11, ORBIT = 1e-6;
 /* Relative noise of what is solved: at rest, orbits. */
 static const double REST_NOISE = 1e-12, ORBIT_NOISE = 1e-10;
 
