@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "parser/language/read/reader.h"
+#include "parser/language/read/programs.h"
 
 static const strut_dimension ANGULAR = {0, 0, -1, 1}; /* rad/s */
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "parser/language/read/csv.h"
-#include "parser/language/read/reader.h"
+#include "parser/language/read/programs.h"
 #include "parser/language/read/reuse/copies.h"
 #include "parser/language/read/reuse/used_files.h"
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "engine/scene/study.h"
+#include "parser/language/read/programs.h"
 #include "parser/language/read/read_scene.h"
-#include "parser/language/read/reader.h"
 
 static const strut_observable *row_at(size_t k) {
   return strut_observable_at((strut_column_kind)k);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "parser/language/read/reader.h"
+#include "parser/language/read/programs.h"
 #include "parser/language/read/reuse/copies.h"
 
 /* The dimension of a signal under construction. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "parser/language/read/programs.h"
 #include "parser/language/read/reuse/copies.h"
 
 /* How a kind is read, beside the rows of its section. */
