@@ -439,7 +439,7 @@
   X(EQUILIBRIA, SEED, "seed", NUMBER, NONE, WHOLE(0, STRUT_MOST_SEED), "1", WRITTEN, 0, "", FIELD(strut_search, seed), "Seed of the random starts. The same seed gives the same result.")
 
 #define STRUT_SOLVER_FIELDS(X) \
-  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, "rk4", WRITTEN, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_experiment, integrator), "Time integration method. Where none is named and friction is `coulomb`, `rk4-events`.") \
+  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, "rk4", WRITTEN, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_experiment, integrator), "Time integration method; unnamed and with `coulomb`, `rk4-events`.") \
   X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_experiment, step), "Time step; with `adaptive`, `adaptive8` and `implicit`, the longest step. A run needs `step` or `accuracy`.") \
   X(SOLVER, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, "1e-6", OPTIONAL, 0, "", FIELD(strut_experiment, tolerance), "Relative local error per step of `adaptive`, `adaptive8` and `implicit`.") \
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine), "Factor by which methods with events divide the step after a touchdown; 1: no refinement.") \
