@@ -413,28 +413,26 @@ strut_status strut_run_sample(strut_run *run, int64_t *stop) {
   int64_t n = run->state->step;
   int32_t lost = strut_run_find_lost_node(run->model, run->state);
   bool due = n >= run->check || run->state->trouble;
-  strut_status limit_status = due ? strut_run_check_step_limit(run) : STRUT_OK;
+  strut_status status = due ? strut_run_check_step_limit(run) : STRUT_OK;
   assert(run->ready && n >= run->first);
   *stop = n;
-  if (limit_status) return limit_status;
-  strut_status states_status = due ? strut_run_check_states(run) : STRUT_OK;
-  if (states_status) return states_status;
-  if (lost >= 0 && due) return strut_run_fail_lost_node(run, lost);
+  if (!status && due) status = strut_run_check_states(run);
+  if (!status && due && lost >= 0) return strut_run_fail_lost_node(run, lost);
+  if (status) return status;
   if (run->model->scene->collision_count) strut_run_watch_collisions(run);
   if (run->model->rubbing.bristles) strut_run_watch_bristles(run);
-  strut_status collapse_status = strut_run_check_collapse(run);
-  if (collapse_status) return collapse_status;
   bool balance_due =
       n == run->answer.step || (n >= run->watch.balance.next && n < run->answer.step);
-  strut_status balance_status = balance_due ? sample_balance(run) : STRUT_OK;
-  if (balance_status) return balance_status;
+  status = strut_run_check_collapse(run);
+  if (!status && balance_due) status = sample_balance(run);
+  if (status) return status;
   if (run->steady.wanted) detect_steady_motion(run);
   if (n == strut_measure_first_step(&run->measure))
     strut_measure_begin(run->model, run->state, &run->measure);
   bool recorded = lost < 0 && (n == strut_recording_next_step(&run->recording, n) ||
                                (n >= run->steps && strut_recording_lacks(&run->recording, n)));
-  strut_status passed = strut_recording_sample(run->state, &run->recording, recorded, run->error);
-  if (passed) return passed;
+  status = strut_recording_sample(run->state, &run->recording, recorded, run->error);
+  if (status) return status;
   if (n == run->answer.step) fill_summary(run, STRUT_OK);
   if (n >= run->steps) return STRUT_OK;
   if (options->interrupt && *options->interrupt)

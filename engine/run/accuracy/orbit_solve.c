@@ -249,7 +249,7 @@ static const double CREEP_CHANGES = 0.02;
 
 strut_experiment strut_orbit_solve_halve_step(const strut_orbit_solve *solve) {
   strut_experiment half = solve->a->coarse;
-  half.step *= 0.5;
+  half.step *= 0.5, half.refine_rate *= 0.5; /* steps after a touchdown are halved, too */
   half.steady.creep = 0.0;
   return half;
 }
