@@ -317,8 +317,8 @@ static bool read_factor(strut_study_reader *reader, const strut_slot *slot, size
   for (const strut_tree *row = slot->value->first; row; row = row->next) {
     if (!is_list_of(r, row, count, "numbers")) return false;
     for (const strut_tree *item = row->first; item; item = item->next)
-      if (!strut_read_number(r, item, "correlation", sample_owner, STRUT_DIM_NONE, STRUT_RANGE_ANY,
-                             &matrix[k++]))
+      if (!strut_read_number(r, item, "correlation", sample_owner, STRUT_DIM_NONE,
+                             STRUT_WITHIN(ANY), &matrix[k++]))
         return false;
   }
   for (size_t i = 0; i < count; i++)
