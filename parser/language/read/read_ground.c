@@ -288,7 +288,7 @@ static void add_entry(strut_reader *reader, const strut_tree *own, const strut_t
     strut_tree value;
   } *both = NULL;
   if (*entry && (*entry)->placed && own->next->kind == STRUT_TREE_MAP)
-    both = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *both);
+    both = strut_scratch_array(reader, 1, sizeof *both);
   if (both) {
     both->key = *(const strut_placed_tree *)*entry, both->value = *(*entry)->next;
     both->key.tree.next = &both->value;
