@@ -368,9 +368,14 @@ static void advance(strut_path_walk *walk) {
   memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
 }
 
-/* A mechanism that is stretched out turns the parameter back, but tension may lead on. */
+/*
+ * A mechanism that is stretched out turns the parameter back, but tension may lead on. At an ordinary limit point no
+ * motion was without stiffness where the step began.
+ */
 static bool leaves_at_turn(strut_path_walk *walk, const strut_path_piece *piece) {
+  int32_t first;
   return strut_path_turns_back(walk) && piece->length > 0 &&
+         strut_path_find_mechanisms(&walk->system, walk->y, &first) &&
          strut_path_locate(&walk->system, piece, strut_path_measure_turn, -1, walk->fork) >= 0 &&
          strut_path_leave_mechanism(walk, walk->fork, walk->tangent[walk->system.n]);
 }
