@@ -32,7 +32,8 @@ export const SLOW = new Set([
  * whose last bits are other than those of the GNU one: the program that takes these functions from emscripten's sources
  * (by LD_PRELOAD) gives all of these answers byte for byte as the module does. None may join them unnoticed, and one that
  * agrees again has to leave. The runs of gull and jib differ in `check_evaluations` alone, by 24 of 267942 and by 12 of
- * 187587: `pow`, by itself, gives error control other steps in their last bits.
+ * 187587, that of nine-member in `force_evaluations`, by 6 of 166281: `pow`, by itself, gives error control other steps
+ * in their last bits.
  */
 export const DIFFERENT = new Set([
   "equilibria gallery/arch-with-flexure.yaml",
@@ -61,5 +62,6 @@ export const DIFFERENT = new Set([
   "run gallery/t-bar-with-tendon.yaml",
   "run gallery/voxel-with-network.yaml",
   "run topologies/gull.yaml",
-  "run topologies/jib.yaml"
+  "run topologies/jib.yaml",
+  "run topologies/nine-member.yaml"
 ]);
