@@ -5,8 +5,8 @@
  * Of k parameters the function is evaluated 2k + 2 times besides the point itself: a pair along each parameter,
  * and a pair along all of them together with an eighth of the steps, which must agree with the sum of the others.
  * By how much it does not is the error. Where the values on both sides of the point lie on two different lines, as
- * where a contact only just grazes, or where they jump, there is no derivative. What a pair does not change by a bit has the
- * derivative 0, with the error that rounding may hide: 0 of a count, and of a parameter that changes nothing at all.
+ * where a contact only just grazes, or where they jump, there is no derivative. What a pair does not change by a bit
+ * has the derivative 0, with the error that rounding may hide: 0 of a count, and of a parameter that changes nothing.
  */
 #pragma once
 
@@ -42,9 +42,9 @@ typedef struct strut_derivatives_task {
   size_t parameter_count, output_count;
   const strut_derivatives_parameter *parameters;
   /**
-   * Fills outputs (output_count), NAN where there is none, and their own errors, NAN where they are unknown and 0 of counts, as they
-   * all are before. From several threads. STRUT_NO_MEMORY and STRUT_INTERRUPTED end everything; after another
-   * failure there are no outputs.
+   * Fills outputs (output_count), NAN where there is none, and their own errors, 0 of counts, NAN where they are
+   * unknown, as they all are before. From several threads. STRUT_NO_MEMORY and STRUT_INTERRUPTED end everything;
+   * after another failure there are no outputs.
    */
   strut_status (*evaluate)(void *context, const double *parameters, double *outputs, double *errors,
                            strut_error *error);

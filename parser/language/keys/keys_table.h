@@ -5,10 +5,10 @@
  *
  * X(section, id, name, type, measure, range, default, need, set, words, field, description)
  *
- * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, SHARE(most) for shares above zero, or WHOLE(least, most) for whole numbers. need: REQUIRED keys must be given;
- * `strut export` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they differ from the default. set: a
- * mapping may give only one of the keys of a set (not 0). Words are separated by '|'; those of a nested mapping are
- * what messages call it, if not by its key, and of NAMES what they are.
+ * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, SHARE(most) of shares above zero, WHOLE(least, most) of whole numbers. need:
+ * REQUIRED keys must be given; `strut export` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they
+ * differ from the default. set: a mapping may give only one of the keys of a set (not 0). Words are separated by '|';
+ * those of a nested mapping are what messages call it, if not by its key, and of NAMES what they are.
  */
 #pragma once
 
