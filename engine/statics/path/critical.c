@@ -13,7 +13,8 @@ static const double COUPLED = 1e-6;  /* of the load: what a null vector feels at
 static const double WEAKLY = 1e-2;   /* likewise, at a bifurcation that is one but for rounding */
 static const double TOGETHER = 1e-9; /* [units of y] what vanishes so near does so at once */
 static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue that is zero */
-static const double ONWARD = 0.02;   /* of a branch: change of the parameter by which it goes on */
+static const double LEVEL = 1e-3;  /* rate of the parameter along a path that may be at its limit */
+static const double ONWARD = 0.02; /* of a branch: change of the parameter by which it goes on */
 
 int32_t strut_path_most_moved(const strut_path_system *system, const gsl_vector *vector) {
   int32_t best = 0;
@@ -144,8 +145,9 @@ static bool meet_critical(strut_path_walk *walk, const strut_path_piece *piece,
     if (k == first) self->node = strut_path_most_moved(system, &null.vector);
   }
   /* what the parameter works on turns it back, though by less than rounding where a kink is near */
-  bool turned =
-      strut_path_turns_back(walk) || (works > WEAKLY && self->null == 1 && is_symmetric(system));
+  double rate = fmin(fabs(walk->tangent[system->n]), fabs(walk->next_tangent[system->n]));
+  bool turned = strut_path_turns_back(walk) ||
+                (rate < LEVEL && works > WEAKLY && self->null == 1 && is_symmetric(system));
   bool fork = !turned || works < WEAKLY; /* at a limit point that rounding makes of one, too */
   bool ends = turned && fork && walk->forks.path == 0; /* branches go on smoothly */
   strut_path_rays rays = {0};

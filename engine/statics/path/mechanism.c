@@ -18,6 +18,7 @@ static const double ROUNDED = 1e-12; /* of stiffness times size: a force that is
 static const double RATE = 1e-9;     /* of the parameter: none */
 static const double NEARBY = 1e-3;  /* [units of y] between where a descent and the equations end */
 static const double NOTABLE = 1e-2; /* of the range: a part of the path that is noted */
+enum { MOST_LEAPS = 2 };            /* within such a part */
 
 /* Do the forces at the latest place differ from those before by rounding and the small leap alone? */
 static bool are_forces_steady(const strut_path_system *system, const double *before) {
@@ -69,10 +70,23 @@ static void go_on_from_leap(strut_path_walk *walk, const double *here, const dou
   strut_path_add_point(walk, walk->negative);
 }
 
+/* Would a leap lead back to where the path comes from, or did several not lead on? */
+static bool is_futile(const strut_path_walk *walk, const double *unknowns, double sense) {
+  const strut_path_system *system = &walk->system;
+  double range = fabs(system->parameter.range), here = strut_path_value(system, unknowns);
+  int near = 0;
+  for (size_t k = 0; k < walk->path->event_count; k++) {
+    const strut_path_event *event = &walk->path->events[k];
+    near += event->kind == STRUT_PATH_MECHANISM && fabs(event->at.factor - here) < NOTABLE * range;
+  }
+  return near >= MOST_LEAPS || sense * (unknowns[system->n] - walk->last[system->n]) < 0.0;
+}
+
 bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, double sense) {
   strut_path_system *system = &walk->system;
   int32_t first = 0, node, forces = strut_force_count(system->model, true);
   if (!walk->settle || system->parameter.options->friction) return false;
+  if (is_futile(walk, unknowns, sense)) return false;
   int32_t count = strut_path_find_mechanisms(system, unknowns, &first);
   if (!count) return false;
   gsl_vector_const_view vector = gsl_matrix_const_column(system->algebra.vectors, (size_t)first);
