@@ -431,6 +431,6 @@ void strut_path_find_rays(strut_path_walk *walk, const double *y, strut_path_ray
     if (all) break;
   }
   for (int32_t k = 0; k < best.count; k++) best.ray[k].order = k;
-  qsort(best.ray, (size_t)best.count, sizeof *best.ray, compare_rays);
+  if (best.count > 0) qsort(best.ray, (size_t)best.count, sizeof *best.ray, compare_rays);
   *rays = best;
 }
