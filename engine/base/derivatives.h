@@ -42,9 +42,9 @@ typedef struct strut_derivatives_task {
   size_t parameter_count, output_count;
   const strut_derivatives_parameter *parameters;
   /**
-   * Fills outputs (output_count), NAN where there is none, and their own errors, 0 of counts, NAN where they are
-   * unknown, as they all are before. From several threads. STRUT_NO_MEMORY and STRUT_INTERRUPTED end everything;
-   * after another failure there are no outputs.
+   * Fills outputs (output_count) with values, or NAN, and errors with the error of each: 0 of a count, NAN, as before
+   * the call, where it is not known. Called from several threads. STRUT_NO_MEMORY and STRUT_INTERRUPTED end
+   * everything; after another failure there are no outputs.
    */
   strut_status (*evaluate)(void *context, const double *parameters, double *outputs, double *errors,
                            strut_error *error);

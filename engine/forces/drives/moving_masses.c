@@ -91,7 +91,7 @@ void strut_sliding_masses_place(const strut_model *model, const strut_state *sta
   for (int c = 0; c < 2 && table->between; c++) {
     double *matrix = state->buffers->sliding_factor + c * n * n;
     fill(table, state->latest->sliding, table->between + 4 * c * n * n, matrix);
-    if (!strut_cholesky_factor(n, matrix)) matrix[0] = NAN; /* so is the motion by then */
+    if (!strut_cholesky_factor(n, matrix)) matrix[0] = NAN; /* as the motion is, too */
   }
 }
 

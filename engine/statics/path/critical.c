@@ -14,7 +14,7 @@ static const double WEAKLY = 1e-2;   /* likewise, at a bifurcation that is one b
 static const double TOGETHER = 1e-9; /* [units of y] what vanishes so near does so at once */
 static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue that is zero */
 static const double LEVEL = 1e-3;  /* rate of the parameter along a path that may be at its limit */
-static const double ONWARD = 0.02; /* of a branch: change of the parameter by which it goes on */
+static const double ONWARD = 0.02; /* change of the parameter over a branch that continues */
 
 int32_t strut_path_most_moved(const strut_path_system *system, const gsl_vector *vector) {
   int32_t best = 0;

@@ -3,7 +3,7 @@
  * Motions without stiffness that the parameter works on: among slack cables, or a straight string that is pulled
  * aside. There the equilibria of one value of the parameter are a family, no tangent leads on, and eigenvalues have
  * no sign but that of rounding. A small change of the parameter decides where in the family the structure
- * comes to rest: a descent finds it, and the path goes on from there.
+ * comes to rest: a descent finds it, and the path continues there.
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@
 
 static const double LEAPS[] = {1e-6, 1e-5, 1e-4, 1e-3}; /* of the range: such changes */
 static const double STEADY = 1e-2;   /* of the largest force: what a leap may change */
-static const double ROUNDED = 1e-12; /* of stiffness times size: a force that is none */
+static const double ROUNDED = 1e-12; /* of stiffness times size: a force of rounding */
 static const double RATE = 1e-9;     /* of the parameter: none */
 static const double NEARBY = 1e-3;  /* [units of y] between where a descent and the equations end */
 static const double NOTABLE = 1e-2; /* of the range: a part of the path that is noted */
@@ -49,7 +49,7 @@ static bool leap_to(strut_path_walk *walk, const double *from, double leap, cons
   return strut_path_evaluate(system, walk->y) && are_forces_steady(system, before);
 }
 
-/* The path goes on from where it has leapt to; it came from `here`. */
+/* Continues the path where it has leapt to; it came from `here`. */
 static void go_on_from_leap(strut_path_walk *walk, const double *here, const double *from,
                             int32_t node, int32_t count) {
   char detail[300], at[STRUT_PATH_TEXT];

@@ -433,7 +433,7 @@ void strut_path_end_within(strut_path_walk *walk, const double *unknowns, strut_
 int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,
                                    int32_t *first);
 /**
- * Where a stable path has motions without stiffness at a point: it goes on where the structure comes to rest a little
+ * Where a stable path has motions without stiffness at a point: continues where the structure comes to rest a little
  * further, with the same forces. False: there is no such motion, or no such rest, and nothing has changed.
  */
 bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, double sense);
