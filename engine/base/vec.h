@@ -30,6 +30,9 @@ static inline strut_vec2 strut_vec2_unit(strut_vec2 d, double length) {
   return length > 0.0 ? (strut_vec2){d.x / length, d.y / length} : (strut_vec2){0.0, 0.0};
 }
 
+/** The larger of two numbers, as fmax where neither is NAN, without its call. */
+static inline double strut_larger(double one, double other) { return one > other ? one : other; }
+
 /** Distance of the points a and b. */
 static inline double strut_distance(const double *first, const double *second) {
   return strut_vec2_length(strut_vec2_between(first, second));

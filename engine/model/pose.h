@@ -82,8 +82,8 @@ static inline double strut_member_across_stiffness(const strut_member_table *mem
 
 /** The largest rounding error of a coordinate of points a and b [m]. */
 static inline double strut_coordinate_rounding(const double *first, const double *second) {
-  return DBL_EPSILON *
-         fmax(fmax(fabs(first[0]), fabs(first[1])), fmax(fabs(second[0]), fabs(second[1])));
+  return DBL_EPSILON * strut_larger(strut_larger(fabs(first[0]), fabs(first[1])),
+                                    strut_larger(fabs(second[0]), fabs(second[1])));
 }
 
 /** Height of a point above the ground's line, along its normal; the ground touches below 0 [m]. */

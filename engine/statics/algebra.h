@@ -162,12 +162,12 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
                                                 strut_arena *arena);
 
 /**
- * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`:
+ * The spectrum of a Hessian by strut_potential_hessian_above(q, least), valid until the next call. `careful`:
  * noise is estimated mode by mode and soft modes are always refined; else only where the dense
  * solver's error could matter, with one noise for all. False if the Hessian is not finite.
  */
-bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
-                            bool careful, strut_spectrum *spectrum);
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const strut_sparse *hessian,
+                            const double *q, double least, bool careful, strut_spectrum *spectrum);
 /** Eigenvalues up to this may be all rounding, where none is larger than `largest`. */
 double strut_spectrum_noise(const strut_spectrum_workspace *room, double largest);
 

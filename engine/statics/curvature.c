@@ -128,8 +128,8 @@ strut_status strut_curvature_create(const strut_potential *potential, strut_aren
 /* The modes where the Hessian was decomposed; false: there are too many. */
 static bool find_modes(strut_curvature *curvature) {
   if (curvature->has_modes || !curvature->spectra) return curvature->has_modes;
-  curvature->has_modes =
-      strut_spectrum_compute(curvature->spectra, curvature->q, 0.0, false, &curvature->now);
+  curvature->has_modes = strut_spectrum_compute(curvature->spectra, curvature->hessian,
+                                                curvature->q, 0.0, false, &curvature->now);
   if (curvature->has_modes && curvature->now.n)
     curvature->scale =
         fmax(fabs(curvature->now.value[0]), fabs(curvature->now.value[curvature->now.n - 1]));

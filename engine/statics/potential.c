@@ -150,9 +150,11 @@ void strut_potential_gradient(const strut_potential *potential, const double *q,
   for (int32_t at = 0; at < potential->model->length; at++)
     if (potential->row_of[at] >= 0) gradient[potential->row_of[at]] -= potential->force[at];
   for (const strut_force *force; (force = strut_force_next(&visit));)
-    for (int32_t k = 0; k < 2 * force->nodes; k++) {
-      int32_t row = potential->row_of[strut_force_coordinate(force, k)];
-      if (row >= 0) gradient[row] += force->pose.force * force->pose.b[k];
+    for (int32_t k = 0; k < force->nodes; k++) {
+      const int32_t *row = potential->row_of + force->at[k];
+      const double *b = force->pose.b + 2 * k;
+      if (row[0] >= 0) gradient[row[0]] += force->pose.force * b[0];
+      if (row[1] >= 0) gradient[row[1]] += force->pose.force * b[1];
     }
 }
 
@@ -161,22 +163,22 @@ double strut_potential_rounding(const strut_potential *potential, const double *
   strut_force_visit visit = strut_potential_visit(potential, q, -HUGE_VAL);
   double largest = 0.0, forces = 0.0;
   for (int32_t at = 0; at < 2 * potential->model->node_count; at++)
-    if (potential->row_of[at] >= 0) forces = fmax(forces, fabs(potential->force[at]));
+    if (potential->row_of[at] >= 0) forces = strut_larger(forces, fabs(potential->force[at]));
   for (const strut_force *force; (force = strut_force_next(&visit));) {
     double bits = force->kind == STRUT_FORCE_ELEMENT ? fabs(force->pose.strain) * DBL_EPSILON : 0.0;
     double steepest = 0.0;
     bool free = force->kind != STRUT_FORCE_MEMBER;
     for (int32_t k = 0; k < force->nodes; k++) {
       const double *at = q + force->at[k], *b = &force->pose.b[2 * k];
-      double slope = fmax(fabs(b[0]), fabs(b[1]));
+      double slope = strut_larger(fabs(b[0]), fabs(b[1]));
       if (force->kind != STRUT_FORCE_ELEMENT) slope = 1.0; /* a length in any direction */
       free =
           free || potential->row_of[force->at[k]] >= 0 || potential->row_of[force->at[k] + 1] >= 0;
-      bits = fmax(bits, slope * strut_coordinate_rounding(at, at));
-      steepest = fmax(steepest, slope);
+      bits = strut_larger(bits, slope * strut_coordinate_rounding(at, at));
+      steepest = strut_larger(steepest, slope);
     }
     bits = steepest * (fabs(force->pose.slope) * bits + fabs(force->pose.force) * DBL_EPSILON);
-    if (free) largest = fmax(largest, bits);
+    if (free) largest = strut_larger(largest, bits);
   }
   return largest + forces * DBL_EPSILON;
 }

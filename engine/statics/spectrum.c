@@ -9,7 +9,6 @@
 
 struct strut_spectrum_workspace {
   const strut_potential *potential;
-  strut_sparse *hessian;
   double least;  /* of the spectrum at hand [N] */
   bool uneven;   /* stiffnesses differ by so much that the dense solver may lose the soft ones */
   double *dense; /* (n, n) */
@@ -41,8 +40,7 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
     return NULL;
   room->potential = potential;
   room->uneven = is_uneven(potential->model);
-  room->hessian = strut_potential_matrix(potential, arena);
-  return room->hessian ? room : NULL;
+  return room;
 }
 
 /* The order of values from small to large; equal ones keep theirs. */
@@ -54,8 +52,7 @@ static void sort_order(const double *value, int32_t n, int32_t *order) {
   }
 }
 
-static bool fill_dense(strut_spectrum_workspace *room) {
-  const strut_sparse *matrix = room->hessian;
+static bool fill_dense(const strut_sparse *matrix, strut_spectrum_workspace *room) {
   size_t n = (size_t)matrix->n;
   memset(room->dense, 0, n * n * sizeof *room->dense);
   for (size_t j = 0; j < n; j++)
@@ -204,14 +201,14 @@ double strut_spectrum_noise(const strut_spectrum_workspace *room, double largest
          DBL_MIN;
 }
 
-bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
-                            bool careful, strut_spectrum *spectrum) {
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const strut_sparse *hessian,
+                            const double *q, double least, bool careful, strut_spectrum *spectrum) {
   int32_t n = room->potential->n, soft = 0, lost = 0;
   *spectrum = (strut_spectrum){n, room->value, room->vector, room->noise};
   if (n == 0) return true;
   room->least = least;
-  strut_potential_hessian_above(room->potential, q, least, room->hessian);
-  if (!fill_dense(room) || !strut_eigen(room->dense, n, room->raw, room->work)) return false;
+  if (!fill_dense(hessian, room) || !strut_eigen(room->dense, n, room->raw, room->work))
+    return false;
   sort_order(room->raw, n, room->order);
   size_t rows = (size_t)n;
   for (size_t i = 0; i < rows; i++) {

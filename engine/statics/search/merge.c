@@ -191,7 +191,8 @@ static strut_status judge_dense(const judgement *self, const double *positions, 
   strut_arena scratch = {0};
   strut_spectrum spectrum;
   strut_spectrum_workspace *room = strut_spectrum_create(self->potential, &scratch);
-  bool good = room && strut_spectrum_compute(room, positions, self->least, true, &spectrum);
+  bool good =
+      room && strut_spectrum_compute(room, self->hessian, positions, self->least, true, &spectrum);
   point->eigenvalues = strut_arena_allocate(arena, (size_t)n, sizeof *point->eigenvalues);
   if (good && point->eigenvalues) {
     for (int32_t i = 0; i < n; i++) {

@@ -16,6 +16,7 @@ struct strut_climber {
   const strut_potential *potential;
   strut_minimiser *minimiser; /* which polishes what a climb ends on */
   strut_spectrum_workspace *spectra;
+  strut_sparse *hessian;
   strut_spectrum now;
   double size;
   int64_t hessian_count;
@@ -39,7 +40,8 @@ strut_climber *strut_climber_create(const strut_potential *potential, strut_mini
   climber->minimiser = minimiser;
   climber->size = potential->model->size > 0 ? potential->model->size : 1.0;
   climber->spectra = strut_spectrum_create(potential, arena);
-  return climber->spectra ? climber : NULL;
+  climber->hessian = strut_potential_matrix(potential, arena);
+  return climber->spectra && climber->hessian ? climber : NULL;
 }
 
 int64_t strut_climber_hessian_count(const strut_climber *climber) { return climber->hessian_count; }
@@ -99,7 +101,9 @@ static double assemble_step(strut_climber *climber, double *length) {
 
 static bool decompose_hessian(strut_climber *climber, const double *positions, bool careful) {
   climber->hessian_count++;
-  return strut_spectrum_compute(climber->spectra, positions, 0.0, careful, &climber->now);
+  strut_potential_hessian(climber->potential, positions, climber->hessian);
+  return strut_spectrum_compute(climber->spectra, climber->hessian, positions, 0.0, careful,
+                                &climber->now);
 }
 
 static void set_trial(strut_climber *climber, const double *positions) {
