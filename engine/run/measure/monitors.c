@@ -20,32 +20,54 @@ enum { EVALUATIONS_PER_SAMPLE = 256, FIRST_ITERATIONS = 30 };
 /* Logarithm of the growth at which an unstable motion has replaced the true one. */
 static const double LOST_MOTION = 16.0;
 
-/* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
+/* image = (stiff K + damp D) motion. */
 typedef struct product {
-  const strut_model *model;
-  const double *q, *motion;
-  double *image, stiff, damp; /* factors of K and D */
+  const double *motion;
+  double *image, stiff, damp;
 } product;
 
-static void apply_force(const product *self, const strut_force *force) {
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT], d[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+static void apply_force(const strut_model *model, const double *q, const strut_force *force,
+                        const product *to) {
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT], moved[STRUT_MOST_GRADIENT];
+  const double *b = force->pose.b, *side = force->side;
+  bool element = force->kind == STRUT_FORCE_ELEMENT;
   int32_t n = 2 * force->nodes;
-  strut_force_stiffness(self->model, force, self->q, k);
-  strut_force_square(force, self->damp * force->damping, d);
+  double stretch = 0.0, turn = 0.0;
+  for (int32_t c = 0; c < n; c += 2) {
+    const double *v = to->motion + force->at[c / 2];
+    moved[c] = v[0], moved[c + 1] = v[1];
+    stretch += b[c] * v[0] + b[c + 1] * v[1];
+    if (!element) turn += side[c] * v[0] + side[c + 1] * v[1];
+  }
+  double along = (to->stiff * force->pose.slope + to->damp * force->damping) * stretch;
+  double across = to->stiff * force->across * turn;
+  if (element) {
+    memset(bend, 0, (size_t)(n * n) * sizeof *bend);
+    strut_force_bend(model, force, q, to->stiff, bend);
+  }
   for (int32_t r = 0; r < n; r++) {
-    double push = 0.0;
-    for (int32_t c = 0; c < n; c++)
-      push += (self->stiff * k[r * n + c] + d[r * n + c]) *
-              self->motion[strut_force_coordinate(force, c)];
-    self->image[strut_force_coordinate(force, r)] += push;
+    double push = along * b[r] + (element ? strut_dot(bend + r * n, moved, n) : across * side[r]);
+    to->image[strut_force_coordinate(force, r)] += push;
   }
 }
 
-static void apply_forces(const product *self, const double *rest, strut_closed closed) {
-  strut_force_visit visit = {
-      .model = self->model, .q = self->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
+/* Makes (count) products at a state's shape, on free coordinates. */
+static void apply_forces(const strut_model *model, const strut_state *state, strut_closed closed,
+                         const product *to, int count) {
+  strut_force_visit visit = {.model = model,
+                             .q = state->q,
+                             .rest = state->latest->rest,
+                             .least = -HUGE_VAL,
+                             .closed = closed};
+  for (int i = 0; i < count; i++)
+    memset(to[i].image, 0, (size_t)model->length * sizeof *to[i].image);
   for (const strut_force *force; (force = strut_force_next(&visit));)
-    if (force->kind != STRUT_FORCE_MEMBER || force->pose.strain > 0.0) apply_force(self, force);
+    for (int i = 0; i < count; i++)
+      if (force->kind != STRUT_FORCE_MEMBER || force->pose.strain > 0.0)
+        apply_force(model, state->q, force, &to[i]);
+  for (int i = 0; i < count; i++)
+    for (int32_t at = 0; at < 2 * model->node_count; at++)
+      if (model->fixed[at]) to[i].image[at] = 0.0;
 }
 
 /* Adds noise to a motion, so that no eigenvector is missed for ever. */
@@ -58,32 +80,18 @@ static void perturb_motion(const strut_model *model, strut_step_limit_monitor *m
 }
 
 /*
- * One step of the power iteration: the Rayleigh quotient of the motion, which lies below the
- * eigenvalue. The motion is the inverse mass times the last image, so that its norm in the mass is
- * known.
+ * The Rayleigh quotient of a motion with its image, which lies below the eigenvalue; the next motion is the inverse
+ * mass times the image, so that its norm in the mass is known.
  */
-static void iterate_power(const strut_model *model, const strut_state *state,
-                          strut_step_limit_monitor *monitor, strut_monitored_set *set) {
+static void improve_motion(const strut_model *model, strut_step_limit_monitor *monitor,
+                           strut_monitored_set *set) {
   int32_t n = 2 * model->node_count;
   double work = 0.0, square = 0.0, largest = 0.0, weight = set->weight;
-  memset(monitor->image, 0, (size_t)model->length * sizeof *monitor->image);
-  product p = {model,
-               state->q,
-               set->motion,
-               monitor->image,
-               monitor->step * monitor->step * set->stiff,
-               monitor->step * set->damp};
-  /* implicit ground dampers: steps are refined while the ground is touched */
-  strut_closed closed =
-      monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
-  apply_forces(&p, state->latest->rest, closed);
-  for (int32_t i = 0; i < n; i++)
-    if (model->fixed[i]) monitor->image[i] = 0.0;
-  strut_mass_solve(model, monitor->image, monitor->divided, monitor->scratch);
+  strut_mass_solve(model, set->image, monitor->divided, monitor->scratch);
   for (int32_t i = 0; i < n; i++) {
-    work += set->motion[i] * monitor->image[i];
-    square += monitor->divided[i] * monitor->image[i];
-    largest = fmax(largest, fabs(monitor->divided[i]));
+    work += set->motion[i] * set->image[i];
+    square += monitor->divided[i] * set->image[i];
+    largest = strut_larger(largest, fabs(monitor->divided[i]));
   }
   if (!(largest > 0.0 && largest < HUGE_VAL)) {
     perturb_motion(model, monitor, set, 1.0);
@@ -93,6 +101,22 @@ static void iterate_power(const strut_model *model, const strut_state *state,
   for (int32_t i = 0; i < n; i++) set->motion[i] = monitor->divided[i] / largest;
   set->weight = square / largest / largest;
   set->strength = weight > 0.0 ? work / weight : 0.0;
+}
+
+/* One step of the power iteration of all sets. */
+static void iterate_power(const strut_model *model, const strut_state *state,
+                          strut_step_limit_monitor *monitor) {
+  /* implicit ground dampers: steps are refined while the ground is touched */
+  strut_closed closed =
+      monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
+  product to[2];
+  for (int i = 0; i < monitor->count; i++) {
+    const strut_monitored_set *set = &monitor->set[i];
+    to[i] = (product){set->motion, set->image, monitor->step * monitor->step * set->stiff,
+                      monitor->step * set->damp};
+  }
+  apply_forces(model, state, closed, to, monitor->count);
+  for (int i = 0; i < monitor->count; i++) improve_motion(model, monitor, &monitor->set[i]);
 }
 
 /* Step limit of a shape; HUGE_VAL where memory is out. */
@@ -140,10 +164,10 @@ void strut_step_limit_monitor_sample(const strut_model *model, const strut_state
   bool again = false;
   monitor->last = state->step;
   monitor->next = state->step + monitor->every;
+  for (int i = 0; i < monitor->count; i++) perturb_motion(model, monitor, &monitor->set[i], 1e-6);
+  iterate_power(model, state, monitor);
   for (int i = 0; i < monitor->count; i++) {
-    strut_monitored_set *set = &monitor->set[i];
-    perturb_motion(model, monitor, set, 1e-6);
-    iterate_power(model, state, monitor, set);
+    const strut_monitored_set *set = &monitor->set[i];
     again = again || set->strength >= set->alarm ||
             (monitor->below && set->strength < 0.99 * set->known);
   }
@@ -185,8 +209,8 @@ bool strut_step_limit_monitor_create(const strut_model *model, strut_state *stat
   monitor->count = region->sets;
   for (int i = 0; i < region->sets; i++)
     monitor->set[i].stiff = region->set[i].stiff, monitor->set[i].damp = region->set[i].damp;
-  double **const all[] = {&monitor->set[0].motion, &monitor->set[1].motion, &monitor->image,
-                          &monitor->divided, &monitor->scratch};
+  double **const all[] = {&monitor->set[0].motion, &monitor->set[1].motion, &monitor->set[0].image,
+                          &monitor->set[1].image,  &monitor->divided,       &monitor->scratch};
   monitor->shape = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
   monitor->rest = strut_arena_allocate(&state->arena, (size_t)model->members.slots, sizeof(double));
   if (!monitor->shape || !monitor->rest) return false;
@@ -198,9 +222,8 @@ bool strut_step_limit_monitor_create(const strut_model *model, strut_state *stat
   for (int i = 0; i < monitor->count; i++) {
     monitor->set[i].alarm = 1.0;
     perturb_motion(model, monitor, &monitor->set[i], 1.0);
-    for (int k = 0; k < FIRST_ITERATIONS; k++)
-      iterate_power(model, state, monitor, &monitor->set[i]);
   }
+  for (int k = 0; k < FIRST_ITERATIONS; k++) iterate_power(model, state, monitor);
   return true;
 }
 
@@ -229,26 +252,17 @@ strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *monit
 bool strut_motion_frequency_create(const strut_model *model, strut_state *state,
                                    strut_motion_frequency *frequency) {
   *frequency = (strut_motion_frequency){0};
-  frequency->image = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
-  return frequency->image;
-}
-
-/* v'(stiff K + damp D)v of the velocities. */
-static double form_of_motion(const strut_model *model, const strut_state *state, double stiff,
-                             double damp, double *image) {
-  double sum = 0.0;
-  product p = {model, state->q, state->v, image, stiff, damp};
-  memset(image, 0, (size_t)model->length * sizeof *image);
-  apply_forces(&p, state->latest->rest, STRUT_CLOSED_TOUCHING);
-  for (int32_t i = 0; i < 2 * model->node_count; i++)
-    if (!model->fixed[i]) sum += image[i] * state->v[i];
-  return sum;
+  return STRUT_NUMBERS(&state->arena, (size_t)model->length, &frequency->image[0],
+                       &frequency->image[1]);
 }
 
 void strut_motion_frequency_sample(const strut_model *model, const strut_state *state,
                                    double kinetic, strut_motion_frequency *frequency) {
-  frequency->curvature += form_of_motion(model, state, 1.0, 0.0, frequency->image);
-  frequency->damping += form_of_motion(model, state, 0.0, 1.0, frequency->image);
+  const product to[] = {{state->v, frequency->image[0], 1.0, 0.0},
+                        {state->v, frequency->image[1], 0.0, 1.0}};
+  apply_forces(model, state, STRUT_CLOSED_TOUCHING, to, 2);
+  frequency->curvature += strut_dot(state->v, frequency->image[0], 2 * model->node_count);
+  frequency->damping += strut_dot(state->v, frequency->image[1], 2 * model->node_count);
   frequency->movement += 2.0 * kinetic;
   frequency->samples++;
 }

@@ -19,7 +19,7 @@
 /** The largest eigenvalue of M^-1 (h^2 K stiff + h D damp): at 1 or more the step may be too large. */
 typedef struct strut_monitored_set {
   double stiff, damp;
-  double *motion;         /* (length) */
+  double *motion, *image; /* (length) */
   double weight;          /* squared norm of the motion in the mass; 0: unknown */
   double strength, known; /* eigenvalue at the last sample, and when the limit was last computed */
   double alarm;           /* strength at which the limit must be recomputed */
@@ -31,9 +31,9 @@ typedef struct strut_step_limit_monitor {
   int64_t every, next; /* steps between samples; step of the next one */
   int count;           /* sets: 2 with RK4, which K and D limit separately */
   strut_monitored_set set[2];
-  double *image, *divided, *scratch; /* (length) */
-  double *shape, *rest;              /* (length), (slots) at the last sample */
-  double known_limit;                /* last computed limit [s] */
+  double *divided, *scratch; /* (length) */
+  double *shape, *rest;      /* (length), (slots) at the last sample */
+  double known_limit;        /* last computed limit [s] */
   uint64_t noise;
   bool below;                 /* the limit is below the step */
   double grown;               /* logarithm of the least growth of a motion since then */
@@ -72,7 +72,7 @@ double strut_step_limit_monitor_last_limit(const strut_model *model,
  * samples. Of several modes they are means weighted with kinetic energy, of squares of the frequencies.
  */
 typedef struct strut_motion_frequency {
-  double *image;    /* (length) */
+  double *image[2]; /* (length) */
   double curvature; /* sum of v'Kv [J/s^2] */
   double damping;   /* sum of v'Dv [J/s] */
   double movement;  /* sum of v'Mv [J] */

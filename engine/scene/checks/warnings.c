@@ -57,6 +57,24 @@ static double rest_length_at(const strut_scene *scene, size_t member, double res
   return rest;
 }
 
+/* The largest magnitude of a wave or a sum of waves; INFINITY of others. */
+static double most_of(const strut_signal *signals, int32_t index) {
+  const strut_signal *signal = &signals[index];
+  double sum = 0.0;
+  if (signal->kind <= STRUT_SQUARE) return fabs(signal->amplitude);
+  if (signal->kind != STRUT_SUM) return (double)INFINITY;
+  for (size_t i = 0; i < signal->term_count; i++) sum += most_of(signals, signal->terms[i]);
+  return sum;
+}
+
+/* Are the drives of the member too small to take all of its rest length? */
+static bool leaves_length(const strut_scene *scene, size_t member, double rest) {
+  for (size_t i = 0; i < scene->actuator_count; i++)
+    if (drives_length_of(&scene->actuators[i], member))
+      rest -= most_of(scene->signals, scene->actuators[i].signal);
+  return rest > 0.0;
+}
+
 /* Finds the shortest rest length up to the time `last` [s], and its time. */
 static double find_shortest_rest_length(const strut_scene *scene, double last, size_t member,
                                         double rest, double *when) {
@@ -88,7 +106,9 @@ static void warn_of_rest_lengths(strut_checker *checker) {
     while (!drives_length_of(&scene->actuators[earlier], member)) earlier++;
     strut_rest rest;
     double t = 0.0;
-    if (earlier < i || !strut_member_rest(scene, member, &rest)) continue;
+    if (earlier < i || !strut_member_rest(scene, member, &rest) ||
+        leaves_length(scene, member, rest.length))
+      continue;
     double least = find_shortest_rest_length(scene, last, member, rest.length, &t);
     if (!(least < -1e-9 * rest.length)) continue;
     if (!below.count) worst = least, when = t;
