@@ -25,7 +25,7 @@ double strut_path_measure_eigenvalue(strut_path_system *system, const double *un
                                      const strut_path_piece *piece, int32_t which) {
   assert(which >= 0 && which < system->n);
   (void)piece;
-  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_VALUES)) return (double)NAN;
+  if (!strut_path_spectrum(system, unknowns)) return (double)NAN;
   return system->spectrum.value[which];
 }
 
@@ -104,7 +104,7 @@ static bool interpolate(const strut_path_system *system, const trials *self, dou
 
 /* Is another eigenvalue as near to zero? Then their order changes where they pass it: each is smooth on one side. */
 static bool is_one_of_several(strut_path_system *system, const double *unknowns, int32_t which) {
-  if (which < 0 || !strut_path_spectrum(system, unknowns, STRUT_PATH_VALUES)) return false;
+  if (which < 0 || !strut_path_spectrum(system, unknowns)) return false;
   double value = fabs(system->spectrum.value[which]);
   for (int32_t i = 0; i < system->n; i++)
     if (i != which && fabs(system->spectrum.value[i]) < ALIKE * value) return true;
@@ -271,8 +271,7 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
 static bool leads_on(strut_path_walk *walk) {
   int32_t n = walk->system.n;
   return walk->tangent[n] * walk->next_tangent[n] > 0 &&
-         strut_path_spectrum(&walk->system, walk->y, STRUT_PATH_SIGNS) &&
-         walk->system.spectrum.negative == 0;
+         strut_path_spectrum(&walk->system, walk->y) && walk->system.spectrum.negative == 0;
 }
 
 /*

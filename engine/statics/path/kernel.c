@@ -243,7 +243,7 @@ static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
   for (int32_t j = 0; j <= system->n; j++)
     ray->direction[j] = (self->y[j] - self->centre[j]) / length;
   ray->done = false, ray->own = 0;
-  if (!strut_path_spectrum(system, self->y, STRUT_PATH_SIGNS)) return false;
+  if (!strut_path_spectrum(system, self->y)) return false;
   ray->negative = system->spectrum.negative;
   rays->count++;
   return true;
@@ -297,7 +297,7 @@ static int32_t count_kernel(reduction *self, int32_t *first) {
   strut_path_system *system = &walk->system;
   double *change = walk->scale, *here = walk->spare;
   int32_t count = 0;
-  if (!strut_path_spectrum(system, self->centre, STRUT_PATH_VALUES)) return 0;
+  if (!strut_path_spectrum(system, self->centre)) return 0;
   for (int32_t i = 0; i < system->n; i++) here[i] = system->spectrum.value[i], change[i] = 0;
   for (int side = -1; side <= 1; side += 2) {
     double value = side * self->radius;
@@ -308,11 +308,11 @@ static int32_t count_kernel(reduction *self, int32_t *first) {
     }
     if (strut_path_correct(system, walk->tangent, value, self->y) < 0) continue;
     self->own[side > 0] = strut_arena_copy(&self->arena, self->y, 1, strut_path_bytes(walk));
-    if (!strut_path_spectrum(system, self->y, STRUT_PATH_VALUES)) continue;
+    if (!strut_path_spectrum(system, self->y)) continue;
     for (int32_t i = 0; i < system->n; i++)
       change[i] = fmax(change[i], fabs(system->spectrum.value[i] - here[i]));
   }
-  if (!strut_path_spectrum(system, self->centre, STRUT_PATH_VECTORS)) return 0;
+  if (!strut_path_spectrum(system, self->centre)) return 0;
   walk->stiff = 0;
   for (int32_t i = 0; i < system->n; i++) {
     double value = system->spectrum.value[i];
@@ -332,7 +332,7 @@ static bool make_basis(reduction *self, int32_t first) {
   for (size_t k = 0; k < m; k++) {
     gsl_vector_view own = gsl_matrix_subcolumn(self->basis, k, 0, n);
     gsl_vector_const_view null =
-        gsl_matrix_const_column(system->algebra.vectors, (size_t)first + k);
+        gsl_vector_const_view_array(strut_path_mode(system, first + (int32_t)k), n);
     gsl_vector_memcpy(&own.vector, &null.vector);
     for (size_t l = 0; l < k; l++) { /* where the stiffness has no symmetry */
       gsl_vector_const_view other = gsl_matrix_const_subcolumn(self->basis, l, 0, n);
@@ -379,7 +379,7 @@ bool strut_path_is_rounding(strut_path_walk *walk, const double *from, const dou
   reduction r = {.w = walk, .centre = centre, .radius = RADII[0], .null = 1, .space = 2};
   int32_t first = 0;
   for (int32_t i = 0; i < 2 * (system->n + 1); i++) centre[i] = 0.5 * (from[i] + to[i]);
-  if (!strut_path_spectrum(system, centre, STRUT_PATH_VECTORS)) return false;
+  if (!strut_path_spectrum(system, centre)) return false;
   double level = system->spectrum.noise * system->size, stiff = 0;
   for (int32_t i = 0; i < system->n; i++) {
     double value = fabs(system->spectrum.value[i]);

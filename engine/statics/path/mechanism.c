@@ -89,8 +89,7 @@ bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, d
   if (is_futile(walk, unknowns, sense)) return false;
   int32_t count = strut_path_find_mechanisms(system, unknowns, &first);
   if (!count) return false;
-  gsl_vector_const_view vector = gsl_matrix_const_column(system->algebra.vectors, (size_t)first);
-  node = strut_path_most_moved(system, &vector.vector);
+  node = strut_path_most_moved(system, strut_path_mode(system, first));
   strut_arena arena = {0};
   strut_path_frozen frozen = {0};
   size_t bytes = strut_path_bytes(walk);

@@ -2,7 +2,7 @@
 /** What an equilibrium path is made of: its parameter, its equations, events on it, and the walk. */
 #pragma once
 
-#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_matrix.h>
 #include <gsl/gsl_permutation.h>
 
 #include "engine/base/arithmetic.h"
@@ -200,17 +200,13 @@ typedef struct strut_path_system {
     int32_t most;       /* that supports have left anywhere on the path */
   } held;
   struct {
-    gsl_matrix *hessian, *work; /* (n, n) */
-    gsl_matrix *bordered;       /* (n + 1, n + 1) */
-    gsl_vector *right, *solution, *values;
-    gsl_matrix *vectors;
+    gsl_matrix *hessian, *bordered; /* (n, n), (n + 1, n + 1) */
+    gsl_vector *right, *solution;   /* (n + 1) */
     gsl_permutation *order;
-    gsl_eigen_symm_workspace *values_only;
-    gsl_eigen_symmv_workspace *eigen;
   } algebra;
   /** After strut_path_spectrum. */
   struct {
-    double *value;     /* (n) ascending, of algebra.values */
+    double *value, *vector, *work; /* (n) ascending; (n, n) the mode of value i in row i; scratch */
     int32_t negative;  /* eigenvalues below zero, and elements folded back, which have one each */
     int32_t folded;    /* these */
     double noise;      /* rounding of the stiffness's entries [N/m] */
@@ -258,19 +254,15 @@ int strut_path_correct(strut_path_system *system, const double *row, double valu
 bool strut_path_tangent(strut_path_system *system, const double *unknowns, const double *row,
                         double *tangent);
 
-/** Detail of the stiffness's spectrum: each level costs several times the previous one. */
-typedef enum strut_path_spectrum_detail {
-  STRUT_PATH_SIGNS,  /* of eigenvalues: how many are negative */
-  STRUT_PATH_VALUES, /* with all digits near zero too, not only to those of the largest */
-  STRUT_PATH_VECTORS /* and eigenvectors */
-} strut_path_spectrum_detail;
-
 /**
- * Eigenvalues of the stiffness, ascending, into system->values, vectors into system->vectors, the
- * number of negative ones into system->negative. False: no scene has this value.
+ * Eigenvalues of the stiffness with all digits near zero too, modes, and how many are negative, into
+ * system->spectrum. False: no scene has this value.
  */
-bool strut_path_spectrum(strut_path_system *system, const double *unknowns,
-                         strut_path_spectrum_detail wanted);
+bool strut_path_spectrum(strut_path_system *system, const double *unknowns);
+/** The mode (n) of an eigenvalue. */
+static inline double *strut_path_mode(const strut_path_system *system, int32_t i) {
+  return system->spectrum.vector + (size_t)i * (size_t)system->n;
+}
 
 /** What may change along the path; switches are numbered in this order. */
 typedef enum strut_path_switch_kind {
@@ -427,8 +419,8 @@ void strut_path_end_within(strut_path_walk *walk, const double *unknowns, strut_
 /* Motions without stiffness, beside rounding. */
 
 /**
- * Motions at y that meet no stiffness beyond rounding, in no member by itself: how many, the columns of
- * algebra.vectors from `first` on. 0 too where another motion is unstable.
+ * Motions at y that meet no stiffness beyond rounding, in no member by itself: how many, the modes
+ * from `first` on. 0 too where another motion is unstable.
  */
 int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,
                                    int32_t *first);
@@ -439,8 +431,8 @@ int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unkn
 bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, double sense);
 /** Remarks long parts of the path on which no member carries a force, or nothing changes. */
 void strut_path_remark_idle(const strut_path_walk *walk);
-/** The node that a vector over the free coordinates moves most. */
-int32_t strut_path_most_moved(const strut_path_system *system, const gsl_vector *vector);
+/** The node that a mode (n) moves most. */
+int32_t strut_path_most_moved(const strut_path_system *system, const double *mode);
 
 /**
  * The scene with the actuator at a value: rest length, angle or pressure of what it drives are those of

@@ -101,7 +101,7 @@ static bool allocate_check(const strut_path_walk *walk, check *self) {
 static bool find_side(strut_path_walk *walk, const double *unknowns, const double *tangent,
                       double step, side *found, bool *blurred) {
   strut_path_system *system = &walk->system;
-  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_SIGNS)) return false;
+  if (!strut_path_spectrum(system, unknowns)) return false;
   double level = fmax(BLURRED * system->spectrum.noise, ROUNDED / step * system->elements.noise);
   *found = (side){system->spectrum.negative, way_of(tangent[system->n])};
   for (int32_t i = 0; i < system->n; i++)

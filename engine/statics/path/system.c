@@ -26,17 +26,13 @@ static bool make_matrices(strut_path_system *system) {
   strut_arena *arena = &system->arena;
   size_t unknowns = (size_t)system->n + 1; /* perhaps the parameter alone */
   size_t n = system->n > 0 ? (size_t)system->n : 1;
-  system->algebra.eigen = gsl_eigen_symmv_alloc(n);
-  system->algebra.values_only = gsl_eigen_symm_alloc(n);
-  return (system->algebra.hessian = strut_arena_matrix(arena, n, n)) &&
-         (system->algebra.work = strut_arena_matrix(arena, n, n)) &&
-         (system->algebra.vectors = strut_arena_matrix(arena, n, n)) &&
-         (system->algebra.values = strut_arena_vector(arena, n)) &&
+  return STRUT_NUMBERS(arena, n, &system->spectrum.value) &&
+         STRUT_NUMBERS(arena, n * n, &system->spectrum.vector, &system->spectrum.work) &&
+         (system->algebra.hessian = strut_arena_matrix(arena, n, n)) &&
          (system->algebra.bordered = strut_arena_matrix(arena, unknowns, unknowns)) &&
          (system->algebra.right = strut_arena_vector(arena, unknowns)) &&
          (system->algebra.solution = strut_arena_vector(arena, unknowns)) &&
-         (system->algebra.order = strut_arena_order(arena, unknowns)) && system->algebra.eigen &&
-         system->algebra.values_only;
+         (system->algebra.order = strut_arena_order(arena, unknowns));
 }
 
 /* False: out of memory. */
@@ -78,9 +74,7 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
   if (status) return status;
   system->n = system->potential->n;
   if (system->n > STRUT_PATH_COORDINATES) return STRUT_OK;
-  if (!make_matrices(system)) return strut_no_memory(error, "");
-  system->spectrum.value = system->algebra.values->data;
-  return STRUT_OK;
+  return make_matrices(system) ? STRUT_OK : strut_no_memory(error, "");
 }
 
 /* Releases what its terms hold outside of the arena; zero-initialised ones may be freed. */
@@ -91,8 +85,6 @@ static void free_parameter(strut_path_parameter *parameter) {
 }
 
 void strut_path_system_free(strut_path_system *system) {
-  gsl_eigen_symmv_free(system->algebra.eigen);
-  gsl_eigen_symm_free(system->algebra.values_only);
   free_parameter(&system->parameter);
   strut_path_terms_release(&system->equations.terms);
   strut_arena_free(&system->arena);

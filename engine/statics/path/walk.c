@@ -190,8 +190,7 @@ static double first_switch(strut_path_walk *walk, const strut_path_piece *piece,
 }
 
 void strut_path_count_negative(strut_path_walk *walk) {
-  strut_path_spectrum(&walk->system, walk->y,
-                      STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
+  strut_path_spectrum(&walk->system, walk->y); /* y is of the path: its value was not refused */
   walk->negative = walk->system.spectrum.negative;
   walk->earlier = 0.0;
   double most = strut_path_keep_values(walk);
