@@ -316,10 +316,10 @@ double strut_path_keep_values(strut_path_walk *walk) {
 
 int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,
                                    int32_t *first) {
-  double sum[MOST_SOFT * MOST_SOFT], most = 0.0;
+  double sum[MOST_SOFT * MOST_SOFT];
   int32_t count = 0;
   if (!strut_path_spectrum(system, unknowns)) return 0;
-  for (int32_t i = 0; i < system->n; i++) most = fmax(most, fabs(system->spectrum.value[i]));
+  double most = strut_path_largest_value(system);
   for (int32_t i = 0; i < system->n && count < MOST_SOFT; i++) {
     if (system->spectrum.value[i] < -NEUTRAL * most) return 0;
     if (system->spectrum.value[i] <= NEUTRAL * most && !count++) *first = i;

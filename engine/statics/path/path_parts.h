@@ -6,6 +6,7 @@
 #include <gsl/gsl_permutation.h>
 
 #include "engine/base/arithmetic.h"
+#include "engine/base/vec.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"
 
@@ -200,8 +201,8 @@ typedef struct strut_path_system {
     int32_t most;       /* that supports have left anywhere on the path */
   } held;
   struct {
-    gsl_matrix *hessian, *bordered; /* (n, n), (n + 1, n + 1) */
-    gsl_vector *right, *solution;   /* (n + 1) */
+    gsl_matrix *hessian, *bordered; /* (n, n), (n + 1, n + 1), with room for planes */
+    gsl_vector *right, *solution;   /* (n + 1), likewise */
     gsl_permutation *order;
   } algebra;
   /** After strut_path_spectrum. */
@@ -250,6 +251,25 @@ bool strut_path_evaluate(strut_path_system *system, const double *unknowns);
 int strut_path_correct(strut_path_system *system, const double *row, double value,
                        double *unknowns);
 
+/** Dimension of a kernel that is searched, at most. */
+enum { STRUT_PATH_KERNEL = 6 };
+
+/** Planes row . y = value that a solution lies on, and forces b stiff along all but the last row that it may lack. */
+typedef struct strut_path_planes {
+  int32_t null;      /* such forces; planes are one more */
+  const double *row; /* (null + 1, n + 1) */
+  const double *value;
+  double stiff, far; /* [N]; a step longer than `far` leads nowhere */
+  double *lack;      /* (null) b */
+} strut_path_planes;
+
+/** The same on planes. */
+int strut_path_correct_on(strut_path_system *system, const strut_path_planes *planes,
+                          double *unknowns);
+/** Solves [K + by slope stiff row'; row 0] x = (top, bottom) into algebra.solution, top (n) or NULL; false: singular. */
+bool strut_path_solve(strut_path_system *system, const strut_path_planes *planes, const double *top,
+                      const double *bottom, double by);
+
 /** The unit tangent with row . tangent > 0; false if the system is singular. */
 bool strut_path_tangent(strut_path_system *system, const double *unknowns, const double *row,
                         double *tangent);
@@ -262,6 +282,10 @@ bool strut_path_spectrum(strut_path_system *system, const double *unknowns);
 /** The mode (n) of an eigenvalue. */
 static inline double *strut_path_mode(const strut_path_system *system, int32_t i) {
   return system->spectrum.vector + (size_t)i * (size_t)system->n;
+}
+/** The largest eigenvalue, absolute. */
+static inline double strut_path_largest_value(const strut_path_system *system) {
+  return strut_largest_magnitude(system->spectrum.value, system->n);
 }
 
 /** What may change along the path; switches are numbered in this order. */
@@ -383,7 +407,6 @@ typedef struct strut_path_walk {
     double *from, *tangent, *to;
     bool known;
   } part;
-  double stiff; /* the largest eigenvalue of a kernel's search, times the size */
   double arc, step;
   int32_t negative; /* eigenvalues below zero beyond y */
   int32_t bends;    /* kinks that stand for a smooth bend since the last point */
