@@ -39,24 +39,37 @@ bool strut_path_wants_fork(strut_path_walk *walk, const double *unknowns) {
   return false;
 }
 
-bool strut_path_freeze(const strut_path_system *system, strut_arena *arena,
-                       strut_path_frozen *frozen) {
+bool strut_path_freeze(const strut_path_walk *walk, strut_arena *arena, strut_path_frozen *frozen) {
+  const strut_path_system *system = &walk->system;
   const strut_model *model = system->model;
-  *frozen = (strut_path_frozen){system->latest.pulling, system->contacts.contact,
-                                system->elements.element};
+  size_t numbers = 2 * ((size_t)system->n + 1);
+  *frozen = (strut_path_frozen){system->lends,
+                                system->latest.pulling,
+                                system->contacts.contact,
+                                system->elements.element,
+                                walk->y,
+                                walk->next,
+                                walk->tangent};
   return STRUT_DUPLICATE(arena, STRUT_NEW(frozen->pulling, model->members.count),
                          STRUT_NEW(frozen->contact, model->contacts.count),
-                         STRUT_NEW(frozen->element, model->elements.count));
+                         STRUT_NEW(frozen->element, model->elements.count),
+                         STRUT_NEW(frozen->y, numbers), STRUT_NEW(frozen->next, numbers),
+                         STRUT_NEW(frozen->tangent, numbers));
 }
 
-void strut_path_thaw(strut_path_system *system, const strut_path_frozen *frozen) {
-  size_t contacts = (size_t)system->model->contacts.count,
+void strut_path_thaw(strut_path_walk *walk, const strut_path_frozen *frozen) {
+  strut_path_system *system = &walk->system;
+  size_t contacts = (size_t)system->model->contacts.count, bytes = strut_path_bytes(walk),
          elements = (size_t)system->model->elements.count;
+  system->lends = frozen->lends;
   memcpy(system->latest.pulling, frozen->pulling, (size_t)system->model->members.count);
   if (contacts)
     memcpy(system->contacts.contact, frozen->contact, contacts * sizeof *frozen->contact);
   if (elements)
     memcpy(system->elements.element, frozen->element, elements * sizeof *frozen->element);
+  memcpy(walk->y, frozen->y, bytes);
+  memcpy(walk->next, frozen->next, bytes);
+  memcpy(walk->tangent, frozen->tangent, bytes);
 }
 
 void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
@@ -72,7 +85,7 @@ void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
                         .path = walk->forks.path,
                         .depth = walk->forks.depth};
   walk->failed =
-      walk->failed || !fork->y || !strut_path_freeze(system, &system->arena, &fork->frozen);
+      walk->failed || !fork->y || !strut_path_freeze(walk, &system->arena, &fork->frozen);
   for (int32_t k = 0; k < rays->count; k++)
     fork->rays.ray[k].done =
         fork->rays.ray[k].own < 0 || &rays->ray[k] == way || (!way && fork->rays.ray[k].own > 0);
@@ -89,7 +102,7 @@ static void forget_directions(strut_path_system *system) {
 static bool leave_fork(strut_path_walk *walk, const strut_path_fork *fork,
                        const strut_path_ray *ray) {
   strut_path_system *system = &walk->system;
-  strut_path_thaw(system, &fork->frozen);
+  strut_path_thaw(walk, &fork->frozen);
   memcpy(walk->y, fork->y, strut_path_bytes(walk));
   forget_directions(system);
   if (!strut_path_tangent(system, ray->y, ray->direction, walk->tangent)) return false;

@@ -365,17 +365,14 @@ typedef struct strut_path_rays {
   strut_path_ray *ray; /* (count) the most stable first */
 } strut_path_rays;
 
-/** What is taut, acts and touches at a point. */
+/** What a walk is at a point: what is taut, acts and touches, and where it goes. */
 typedef struct strut_path_frozen {
+  bool lends;
   uint8_t *pulling;            /* (members) */
   strut_path_contact *contact; /* (contacts) */
   strut_path_element *element; /* (elements) */
+  double *y, *next, *tangent;  /* (2 n + 2) */
 } strut_path_frozen;
-
-/** Copies it from the system into the arena, and back; false: out of memory. */
-bool strut_path_freeze(const strut_path_system *system, strut_arena *arena,
-                       strut_path_frozen *frozen);
-void strut_path_thaw(strut_path_system *system, const strut_path_frozen *frozen);
 
 /** A bifurcation that branches may leave: all that a walk needs to begin there. */
 typedef struct strut_path_fork {
@@ -421,6 +418,10 @@ typedef struct strut_path_walk {
         lost; /* bifurcations or branches for which there was no room; that did not begin */
   } forks;
 } strut_path_walk;
+
+/** Copies what it is into the arena, and back; false: out of memory. */
+bool strut_path_freeze(const strut_path_walk *walk, strut_arena *arena, strut_path_frozen *frozen);
+void strut_path_thaw(strut_path_walk *walk, const strut_path_frozen *frozen);
 
 /** Of a point y. */
 static inline size_t strut_path_bytes(const strut_path_walk *walk) {
