@@ -383,16 +383,37 @@ typedef struct strut_path_fork {
   int32_t path, depth;
 } strut_path_fork;
 
+/** What changes at limit points and bifurcations: eigenvalues below zero, and the way of the parameter. */
+typedef struct strut_path_side {
+  int32_t negative;
+  int way; /* 0: along it nothing changes beyond rounding */
+} strut_path_side;
+
+/** A part of a step: its begin, and the place of its end along the tangent there. */
+typedef struct strut_path_part {
+  double *y, *tangent, *end; /* (2 n + 2) */
+  strut_path_side before;
+} strut_path_part;
+
+/** A step that is taken again in parts. */
+typedef struct strut_path_check {
+  strut_path_part whole, inner;
+  double *y, *tangent, *next_tangent; /* (2 n + 2) where it is */
+  bool blurred;                       /* an eigenvalue had no sign */
+} strut_path_check;
+
 typedef struct strut_path_walk {
   strut_path_system system;
   strut_path *path;
   double *y, *next;               /* (2 n + 2) the present point, and the next */
   double *tangent, *next_tangent; /* (n + 1) there */
   double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
-  double *fork, *values, *scale;  /* (2 n + 2) scratch; (n) eigenvalues at y, and scratch */
-  double *earlier_values;         /* (n) at the point before, if nothing jumped since */
-  double *first, *first_tangent;  /* (2 n + 2), (n + 1) where the path begins */
-  double *last, *last_tangent;    /* (2 n + 2), (n + 1) where the latest step began */
+  double *beyond;                 /* (2 n + 2) where a step would lead that a switch ends */
+  strut_path_check check;
+  double *fork, *values, *scale; /* (2 n + 2) scratch; (n) eigenvalues at y, and scratch */
+  double *earlier_values;        /* (n) at the point before, if nothing jumped since */
+  double *first, *first_tangent; /* (2 n + 2), (n + 1) where the path begins */
+  double *last, *last_tangent;   /* (2 n + 2), (n + 1) where the latest step began */
   double last_arc;
   double *settled; /* (length) scratch */
   /** Moves q (length) downhill to rest where the parameter has a value; false: it finds none. NULL: not to be had. */

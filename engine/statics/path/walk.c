@@ -200,10 +200,18 @@ void strut_path_count_negative(strut_path_walk *walk) {
   if (rounded && strut_path_find_mechanisms(&walk->system, walk->y, &first)) walk->negative = 0;
 }
 
-/* How far the next point is along the tangent. */
-static double length_ahead(const strut_path_walk *walk) {
-  return strut_path_dot(walk, walk->tangent, walk->next) -
-         strut_path_dot(walk, walk->tangent, walk->y);
+/* From the present point. */
+static strut_path_piece piece_to(const strut_path_walk *walk, const double *to) {
+  const double *row = walk->tangent;
+  return (strut_path_piece){walk->y, row, to,
+                            strut_path_dot(walk, row, to) - strut_path_dot(walk, row, walk->y)};
+}
+
+/* The piece ends in w->trial. */
+static void cut_piece(strut_path_walk *walk) {
+  memcpy(walk->next, walk->trial, strut_path_bytes(walk));
+  if (!strut_path_tangent(&walk->system, walk->next, walk->tangent, walk->next_tangent))
+    memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
 }
 
 /* How far the parameter is from where the path ends [ranges]. */
@@ -218,29 +226,25 @@ static double measure_end(strut_path_system *system, const double *unknowns,
  * too. To a hair below the limit the stiffness is singular but for rounding, and the search along the path finds it.
  */
 static bool land_on_end(strut_path_walk *walk) {
-  strut_path_system *system = &walk->system;
-  strut_path_piece piece = {walk->y, walk->tangent, walk->next, length_ahead(walk)};
-  double from = walk->y[system->n];
-  if (!(from < 1)) return false;
-  if (walk->next[system->n] < 1) {
-    if (!strut_path_turns_back(walk) || walk->tangent[system->n] < 0 || !(piece.length > 0) ||
-        strut_path_locate(system, &piece, strut_path_measure_turn, 0, walk->fork) < 0 ||
-        system->strayed || !(measure_end(system, walk->fork, &piece, 0) >= 0))
+  int32_t n = walk->system.n;
+  strut_path_piece piece = piece_to(walk, walk->next);
+  if (!(walk->y[n] < 1)) return false;
+  if (walk->next[n] < 1) {
+    if (!strut_path_turns_back(walk) || walk->tangent[n] < 0 || !(piece.length > 0) ||
+        strut_path_locate(&walk->system, &piece, strut_path_measure_turn, 0, walk->fork) < 0 ||
+        walk->system.strayed || !(measure_end(&walk->system, walk->fork, &piece, 0) >= 0))
       return false;
-    piece.to = walk->fork;
-    piece.length = strut_path_dot(walk, walk->tangent, walk->fork) -
-                   strut_path_dot(walk, walk->tangent, walk->y);
-    if (!(piece.length > 0)) return false;
+    piece = piece_to(walk, walk->fork);
   }
-  double share = (1 - from) / (piece.to[system->n] - from);
-  for (int32_t i = 0; i < 2 * (system->n + 1); i++)
+  double share = (1 - walk->y[n]) / (piece.to[n] - walk->y[n]);
+  for (int32_t i = 0; i < 2 * (n + 1); i++)
     walk->trial[i] = walk->y[i] + share * (piece.to[i] - walk->y[i]);
-  bool corrected =
-      piece.to != walk->fork && strut_path_correct(system, walk->upward, 1.0, walk->trial) >= 0;
-  if (!corrected &&
-      (!(piece.length > 0) || strut_path_locate(system, &piece, measure_end, 0, walk->trial) < 0))
+  if ((piece.to == walk->fork ||
+       strut_path_correct(&walk->system, walk->upward, 1.0, walk->trial) < 0) &&
+      (!(piece.length > 0) ||
+       strut_path_locate(&walk->system, &piece, measure_end, 0, walk->trial) < 0))
     return false;
-  walk->trial[system->n] = 1.0, walk->trial[2 * system->n + 1] = 0.0;
+  walk->trial[n] = 1.0, walk->trial[2 * n + 1] = 0.0;
   memcpy(walk->next, walk->trial, strut_path_bytes(walk));
   return true;
 }
@@ -262,9 +266,7 @@ static bool land_on_stop(strut_path_walk *walk, const strut_path_piece *piece) {
          to = measure_stop(system, piece->to, piece, 0);
   if (!(from * to <= 0.0) || from == 0.0) return false;
   if (strut_path_locate(system, piece, measure_stop, 0, walk->trial) < 0) return false;
-  memcpy(walk->next, walk->trial, strut_path_bytes(walk));
-  if (!strut_path_tangent(system, walk->next, walk->tangent, walk->next_tangent))
-    memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
+  cut_piece(walk);
   return true;
 }
 
@@ -379,19 +381,10 @@ static bool leaves_at_turn(strut_path_walk *walk, const strut_path_piece *piece)
          strut_path_leave_mechanism(walk, walk->fork, walk->tangent[walk->system.n]);
 }
 
-/* Ends the piece where a switch is thrown and continues from there. */
-static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_t which,
-                          double *beyond) {
-  memcpy(beyond, walk->next, strut_path_bytes(walk));
-  memcpy(walk->next, walk->trial, strut_path_bytes(walk));
-  if (!strut_path_tangent(&walk->system, walk->next, walk->tangent, walk->next_tangent))
-    memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
-  strut_path_ray way;
-  if (leaves_at_turn(walk, piece)) return true;
-  if (strut_path_find_criticals(walk, piece, &way)) return go_on_along(walk, &way);
-  advance(walk);
+/* Throws a switch where the piece has ended, and continues from there. */
+static bool leave_switch(strut_path_walk *walk, int32_t which) {
   int32_t negative = walk->negative;
-  bool on = pass_switch(walk, which, beyond);
+  bool on = pass_switch(walk, which, walk->beyond);
   double since = walk->arc - walk->path->points[walk->path->point_count - 1].at.arc;
   if (!on && strut_path_turns_round(&walk->system, which)) return end_path(walk, STRUT_PATH_LOST);
   bool bends = on && negative == walk->negative && strut_path_is_bend(&walk->system, which);
@@ -404,7 +397,8 @@ static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_
 
 /* A step, or a part of it up to a kink. */
 static bool take_step(strut_path_walk *walk) {
-  strut_path_piece piece = {walk->y, walk->tangent, walk->next, 0};
+  strut_path_piece piece;
+  strut_path_ray way;
   int32_t which;
   bool landed, stopped, strayed;
   double place;
@@ -412,26 +406,24 @@ static bool take_step(strut_path_walk *walk) {
     if (!strut_path_find_next(walk))
       return strut_path_leave_mechanism(walk, walk->y, walk->tangent[walk->system.n]) ||
              end_path(walk, find_reason(walk));
-    piece.length = length_ahead(walk);
+    piece = piece_to(walk, walk->next);
     landed = land_on_end(walk), stopped = land_on_stop(walk, &piece);
-    if (landed || stopped) piece.length = length_ahead(walk);
+    piece = piece_to(walk, walk->next);
     place = first_switch(walk, &piece, &which, &strayed);
     strayed = strayed && walk->step > SHORTEST_CHECKED;
     if (strayed) walk->step *= 0.25;
   } while (strayed && !walk->failed);
   if (which >= 0) {
     piece.length = place;
-    double *beyond = strut_allocate(1, strut_path_bytes(walk));
-    walk->failed = walk->failed || !beyond;
-    bool on = beyond && end_at_switch(walk, &piece, which, beyond);
-    strut_release(beyond);
-    return on && !walk->failed;
+    memcpy(walk->beyond, walk->next, strut_path_bytes(walk));
+    cut_piece(walk);
+  } else {
+    walk->bends = 0;
   }
-  walk->bends = 0;
-  strut_path_ray way;
   if (leaves_at_turn(walk, &piece)) return !walk->failed;
   if (strut_path_find_criticals(walk, &piece, &way)) return go_on_along(walk, &way);
   advance(walk);
+  if (which >= 0) return leave_switch(walk, which) && !walk->failed;
   strut_path_add_point(walk, walk->negative);
   if (walk->failed) return false;
   if (landed || stopped) {
