@@ -225,7 +225,7 @@ enum { MOST_SOFT = 40 };
 
 static const double SOFT = 1e-6;        /* of the largest eigenvalue: few digits are left */
 static const double ZERO_VALUE = 1e-13; /* of a soft mode's largest parts: no sign below this */
-static const double NO_VALUE = 1e-20;   /* of the largest eigenvalue, likewise */
+static const double NO_VALUE = 1e-15;   /* of the largest eigenvalue, likewise */
 static const double ROUNDING = 2e-16;   /* of a double */
 static const double NEUTRAL =
     1e-9; /* likewise: a motion that an event has found without stiffness */

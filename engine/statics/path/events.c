@@ -151,6 +151,7 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
 /* Switches at one kink of which all combinations are tried. */
 enum { MOST_TOGETHER = 10 };
 
+static const double LOOSE = 1e-12;  /* of the largest eigenvalue: one that has no stiffness */
 static const double AHEAD = 1e-6;   /* how far along a tangent it is seen what a switch will do */
 static const double STEADY = 1e-12; /* of what moves: a switch that changes less stays as it is */
 static const double LAST = 1e-15;   /* of the size: likewise, by rounding */
@@ -227,16 +228,25 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
   return true;
 }
 
+/* Is a motion without stiffness here, so that a tangent is one of many? */
+static bool is_loose(strut_path_walk *walk) {
+  strut_path_system *system = &walk->system;
+  double least = HUGE_VAL;
+  if (!strut_path_spectrum(system, walk->y)) return true;
+  for (int32_t i = 0; i < system->n; i++) least = fmin(least, fabs(system->spectrum.value[i]));
+  return least <= LOOSE * strut_path_largest_value(system);
+}
+
 /* Does a stable path continue with the parameter? */
 static bool leads_on(strut_path_walk *walk) {
   int32_t n = walk->system.n;
-  return walk->tangent[n] * walk->next_tangent[n] > 0 &&
-         strut_path_spectrum(&walk->system, walk->y) && walk->system.spectrum.negative == 0;
+  return walk->tangent[n] * walk->next_tangent[n] > 0 && !is_loose(walk) &&
+         walk->system.spectrum.negative == 0;
 }
 
 /*
  * Chooses the switches thrown here: those that the old stiffness throws, else any consistent set. Where the parameter
- * would turn back a stable path on which it does not goes first.
+ * would turn back, or a motion lose its stiffness, a stable path on which they do not goes first.
  */
 static bool choose_switches(strut_path_walk *walk, const switch_group *self, const double *beyond,
                             unsigned *thrown) {
@@ -249,7 +259,7 @@ static bool choose_switches(strut_path_walk *walk, const switch_group *self, con
   bool found = find_tangent(walk, self, first, beyond);
   bool turned = found && walk->tangent[n] * walk->next_tangent[n] < 0;
   *thrown = first;
-  if (found && !turned) return true;
+  if (found && !turned && !is_loose(walk)) return true;
   for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
     if (*thrown != first && find_tangent(walk, self, *thrown, beyond) && (!found || leads_on(walk)))
       return true;
