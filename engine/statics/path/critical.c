@@ -304,14 +304,16 @@ static int32_t find_soft(const strut_path_system *system, double below, int32_t 
   return count;
 }
 
-double strut_path_keep_values(strut_path_walk *walk) {
-  double least = HUGE_VAL, most = 0.0;
-  for (int32_t i = 0; i < walk->system.n; i++) {
-    double value = walk->values[i] = walk->system.spectrum.value[i];
-    least = fmin(least, fabs(value)), most = fmax(most, fabs(value));
-  }
-  if (least > NEUTRAL * most) walk->system.lends = false;
-  return most;
+void strut_path_keep_values(strut_path_walk *walk) {
+  strut_path_system *system = &walk->system;
+  memcpy(walk->values, system->spectrum.value, (size_t)system->n * sizeof *walk->values);
+  if (!strut_path_is_loose(system, NEUTRAL)) system->lends = false;
+}
+
+bool strut_path_is_loose(const strut_path_system *system, double share) {
+  double least = HUGE_VAL;
+  for (int32_t i = 0; i < system->n; i++) least = fmin(least, fabs(system->spectrum.value[i]));
+  return least <= share * strut_path_largest_value(system);
 }
 
 int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,

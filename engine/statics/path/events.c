@@ -228,13 +228,9 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
   return true;
 }
 
-/* Is a motion without stiffness here, so that a tangent is one of many? */
+/* Has a motion lost its stiffness here? */
 static bool is_loose(strut_path_walk *walk) {
-  strut_path_system *system = &walk->system;
-  double least = HUGE_VAL;
-  if (!strut_path_spectrum(system, walk->y)) return true;
-  for (int32_t i = 0; i < system->n; i++) least = fmin(least, fabs(system->spectrum.value[i]));
-  return least <= LOOSE * strut_path_largest_value(system);
+  return !strut_path_spectrum(&walk->system, walk->y) || strut_path_is_loose(&walk->system, LOOSE);
 }
 
 /* Does a stable path continue with the parameter? */

@@ -545,8 +545,10 @@ void strut_path_report_exchange(strut_path_walk *walk, double turn, int32_t befo
 /** Is this switch one of the many kinks that stand for the bend of a smooth law? */
 bool strut_path_is_bend(const strut_path_system *system, int32_t which);
 
-/** Keeps the latest eigenvalues as those of walk->y; the largest of them. */
-double strut_path_keep_values(strut_path_walk *walk);
+/** Keeps the latest eigenvalues as those of walk->y. */
+void strut_path_keep_values(strut_path_walk *walk);
+/** Has a motion of the latest spectrum no stiffness beside a share of the largest? Then a tangent is one of many. */
+bool strut_path_is_loose(const strut_path_system *system, double share);
 /** Eigenvalues below zero at walk->y, into walk->negative. */
 void strut_path_count_negative(strut_path_walk *walk);
 

@@ -142,10 +142,9 @@ static const double LONGEST_HELD = 0.02;     /* where the curve is a reaction */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
 /* Relative to the size: a cable whose length equals its rest length along the path, up to rounding. */
 static const double HANGING = 1e-15;
-static const double CLOSE = 1e-6;    /* of the range: a value refused so near ends the path */
-static const double NEARBY = 1e-6;   /* largest correction of the start */
-static const double LOCATED = 1e-12; /* of the largest eigenvalue: rounding where an event is */
-static const double ALONG = 0.9;     /* cosine of tangents of one way through a point */
+static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
+static const double NEARBY = 1e-6; /* largest correction of the start */
+static const double ALONG = 0.9;   /* cosine of tangents of one way through a point */
 
 double strut_path_dot(const strut_path_walk *walk, const double *first, const double *second) {
   double sum = 0;
@@ -193,11 +192,7 @@ void strut_path_count_negative(strut_path_walk *walk) {
   strut_path_spectrum(&walk->system, walk->y); /* y is of the path: its value was not refused */
   walk->negative = walk->system.spectrum.negative;
   walk->earlier = 0.0;
-  double most = strut_path_keep_values(walk);
-  int32_t first, rounded = 0;
-  for (int32_t i = 0; i < walk->system.n; i++)
-    rounded += walk->values[i] < 0.0 && walk->values[i] > -LOCATED * most;
-  if (rounded && strut_path_find_mechanisms(&walk->system, walk->y, &first)) walk->negative = 0;
+  strut_path_keep_values(walk);
 }
 
 /* From the present point. */
