@@ -420,6 +420,7 @@ bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member) {
     still = still && fabs(walk->y[i] - walk->spare[i]) < STILL;
   if (!found || !(still || is_kept_on_line(system, member, ahead))) {
     memcpy(walk->y, walk->spare, strut_path_bytes(walk));
+    walk->path->point_count--;
     return false;
   }
   snprintf(what, sizeof what, "%s shrinks to nothing and its force turns round",

@@ -151,7 +151,8 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
 /* Switches at one kink of which all combinations are tried. */
 enum { MOST_TOGETHER = 10 };
 
-static const double LOOSE = 1e-12;  /* of the largest eigenvalue: one that has no stiffness */
+static const double LOOSE = 1e-12,
+                    FIRM = 1e-10;   /* of the largest eigenvalue: none; certainly one */
 static const double AHEAD = 1e-6;   /* how far along a tangent it is seen what a switch will do */
 static const double STEADY = 1e-12; /* of what moves: a switch that changes less stays as it is */
 static const double LAST = 1e-15;   /* of the size: likewise, by rounding */
@@ -228,16 +229,15 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
   return true;
 }
 
-/* Has a motion lost its stiffness here? */
-static bool is_loose(strut_path_walk *walk) {
-  return !strut_path_spectrum(&walk->system, walk->y) || strut_path_is_loose(&walk->system, LOOSE);
+/* Has a motion at walk->y no stiffness beside a share of the largest? */
+static bool is_loose(strut_path_walk *walk, double share) {
+  return !strut_path_spectrum(&walk->system, walk->y) || strut_path_is_loose(&walk->system, share);
 }
 
-/* Does a stable path continue with the parameter? */
-static bool leads_on(strut_path_walk *walk) {
+/* Does a path that is stable by the latest spectrum continue with the parameter? */
+static bool leads_on(const strut_path_walk *walk) {
   int32_t n = walk->system.n;
-  return walk->tangent[n] * walk->next_tangent[n] > 0 && !is_loose(walk) &&
-         walk->system.spectrum.negative == 0;
+  return walk->tangent[n] * walk->next_tangent[n] > 0 && walk->system.spectrum.negative == 0;
 }
 
 /*
@@ -255,10 +255,12 @@ static bool choose_switches(strut_path_walk *walk, const switch_group *self, con
   bool found = find_tangent(walk, self, first, beyond);
   bool turned = found && walk->tangent[n] * walk->next_tangent[n] < 0;
   *thrown = first;
-  if (found && !turned && !is_loose(walk)) return true;
-  for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
-    if (*thrown != first && find_tangent(walk, self, *thrown, beyond) && (!found || leads_on(walk)))
-      return true;
+  if (found && !turned && !is_loose(walk, LOOSE)) return true;
+  for (int loose = 0; loose <= (!found || turned); loose++)
+    for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
+      if (*thrown != first && find_tangent(walk, self, *thrown, beyond) &&
+          (!is_loose(walk, FIRM) || loose) && (!found || leads_on(walk)))
+        return true;
   *thrown = first;
   if (found) return find_tangent(walk, self, first, beyond);
   set_switches(walk, self, first);

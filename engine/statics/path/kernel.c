@@ -7,6 +7,7 @@
  * third order but for r^4: fitted to its values, its zeros are found from many starts, always the same ones,
  * and each is corrected by the full equations.
  */
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -27,6 +28,7 @@ enum {
 static const double RADII[] = {2e-3, 5e-4, 1e-4, 2e-5, 4e-6}; /* of spheres tried [units of y] */
 static const double ROUNDED = 3.0; /* roundings of the stiffness, over the size */
 static const double WITHIN = 2.0;  /* changes over a radius: an eigenvalue that vanishes inside */
+static const double FITTED = 3e-4; /* of its largest coefficient: what the polynomial may miss */
 static const double ROOT = 1e-11,
                     SMALL_STEP = 0.4; /* of the polynomial's zeros, on the unit sphere */
 static const double APART = 0.02;     /* of the radius: zeros that are not one */
@@ -40,7 +42,8 @@ typedef struct reduction {
   double *basis;        /* (space, n + 1), orthonormal: the kernel, then the rest of the plane */
   double *y, *own[2];   /* (2 n + 2) scratch; the path that is walked, before and after */
   strut_arena arena;
-  int terms; /* of the polynomial */
+  int terms;  /* of the polynomial */
+  bool rough; /* it misses b */
   double polynomial[MOST_NULL][MOST_TERMS];
 } reduction;
 
@@ -118,6 +121,7 @@ static bool fit_polynomial(reduction *self) {
     double most = 0;
     made = gsl_linalg_QR_lssolve(matrix, tau, &column.vector, vector, left) == 0;
     for (size_t i = 0; i < columns; i++) most = fmax(most, fabs(gsl_vector_get(vector, i)));
+    self->rough = self->rough || gsl_blas_dnrm2(left) > FITTED * most;
     for (size_t i = 0; i < columns && made; i++)
       self->polynomial[k][i] = gsl_vector_get(vector, i) / (most > 0 ? most : 1.0);
   }
@@ -327,7 +331,8 @@ bool strut_path_is_rounding(strut_path_walk *walk, const double *from, const dou
 static bool find_at_radius(reduction *self, strut_path_rays *rays) {
   int32_t first = 0;
   self->null = rays->null = count_kernel(self, &first);
-  return self->null && make_basis(self, first) && fit_polynomial(self) && search_sphere(self, rays);
+  return self->null && make_basis(self, first) && fit_polynomial(self) &&
+         search_sphere(self, rays) && !self->rough;
 }
 
 static int compare_rays(const void *first, const void *second) {
