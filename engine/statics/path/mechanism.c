@@ -73,13 +73,15 @@ static void go_on_from_leap(strut_path_walk *walk, const double *here, const dou
 /* Would a leap lead back to where the path comes from, or did several not lead on? */
 static bool is_futile(const strut_path_walk *walk, const double *unknowns, double sense) {
   const strut_path_system *system = &walk->system;
-  double range = fabs(system->parameter.range), here = strut_path_value(system, unknowns);
+  const strut_path *path = walk->path;
+  double range = system->parameter.range, here = strut_path_value(system, unknowns), came = 0.0;
   int near = 0;
-  for (size_t k = 0; k < walk->path->event_count; k++) {
-    const strut_path_event *event = &walk->path->events[k];
-    near += event->kind == STRUT_PATH_MECHANISM && fabs(event->at.factor - here) < NOTABLE * range;
-  }
-  return near >= MOST_LEAPS || sense * (unknowns[system->n] - walk->last[system->n]) < 0.0;
+  for (size_t k = path->point_count; k-- > 0 && came == 0.0;)
+    came = (here - path->points[k].at.factor) / range;
+  for (size_t k = 0; k < path->event_count; k++)
+    near += path->events[k].kind == STRUT_PATH_MECHANISM &&
+            fabs(path->events[k].at.factor - here) < NOTABLE * fabs(range);
+  return near >= MOST_LEAPS || sense * came < 0.0;
 }
 
 bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, double sense) {
