@@ -212,8 +212,6 @@ static void gradient_in(const strut_path_system *system, const strut_path_terms 
 static void find_rate(const strut_path_system *system, int32_t i, double rate[2]) {
   const strut_path_parameter *parameter = &system->parameter;
   double below[2], above[2];
-  rate[0] = rate[1] = 0.0;
-  if (parameter->options->over != STRUT_PATH_OVER_SCENE) return;
   const strut_contact_pose low = pose_in(system, &parameter->low, i),
                            high = pose_in(system, &parameter->high, i);
   gradient_in(system, &parameter->low, i, &low, below);

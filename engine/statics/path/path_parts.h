@@ -27,13 +27,13 @@ typedef struct strut_path_terms {
 /** strut_path_parameter_create fills it; of the one in use the address must not change. */
 typedef struct strut_path_parameter {
   const strut_path_options *options;
-  const strut_model *model; /* at `from`: of all others the structure must be the same */
-  const double *load;       /* (length) loads at factor 1 [N], then (slots) moments [N m] */
-  double from, range;       /* [SI]; range is not 0 */
-  strut_path_terms base, low, high;
-  double apart;        /* of low and high as a derivative took them */
-  double refused_at;   /* the last value that was refused, and why */
-  strut_error refusal; /* STRUT_OK: none was */
+  const strut_model *model;         /* at `from`: of all others the structure must be the same */
+  const double *load;               /* (length) loads at factor 1 [N], then (slots) moments [N m] */
+  double from, range;               /* [SI]; range is not 0 */
+  strut_path_terms base, low, high; /* at `from`, and to both sides as the latest rates took them */
+  double apart;                     /* of these two */
+  double refused_at;                /* the last value that was refused, and why */
+  strut_error refusal;              /* STRUT_OK: none was */
 } strut_path_parameter;
 
 /** Terms of zeros in the arena; false: out of memory. */
