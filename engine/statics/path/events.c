@@ -242,7 +242,8 @@ static bool leads_on(const strut_path_walk *walk) {
 
 /*
  * Chooses the switches thrown here: those that the old stiffness throws, else any consistent set. Where the parameter
- * would turn back, or a motion lose its stiffness, a stable path on which they do not goes first.
+ * would turn back, or a motion lose its stiffness, a stable path on which they do not goes first, but not twice in one
+ * place.
  */
 static bool choose_switches(strut_path_walk *walk, const switch_group *self, const double *beyond,
                             unsigned *thrown) {
@@ -256,10 +257,14 @@ static bool choose_switches(strut_path_walk *walk, const switch_group *self, con
   bool turned = found && walk->tangent[n] * walk->next_tangent[n] < 0;
   *thrown = first;
   if (found && !turned && !is_loose(walk, LOOSE)) return true;
-  for (int loose = 0; loose <= (!found || turned); loose++)
+  const strut_path *path = walk->path;
+  bool again = path->event_count && walk->arc == path->events[path->event_count - 1].at.arc;
+  int most = !again ? 2 : turned ? 1 : 0; /* 2: firm, and leads on; 1: leads on; 0: any */
+  int least = !found ? 0 : turned ? 1 : 2;
+  for (int wish = most; wish >= least; wish--)
     for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
       if (*thrown != first && find_tangent(walk, self, *thrown, beyond) &&
-          (!is_loose(walk, FIRM) || loose) && (!found || leads_on(walk)))
+          (!is_loose(walk, FIRM) || wish < 2) && (leads_on(walk) || wish < 1))
         return true;
   *thrown = first;
   if (found) return find_tangent(walk, self, first, beyond);
