@@ -15,7 +15,6 @@ static const double SAME_FORK = 1e-5; /* two bifurcations so near are one [units
 static const double PASSING = 0.02;   /* of a step: a branch so near a bifurcation passes it */
 static const double ALIKE = 1e-6;     /* of the range: values of the parameter on twins */
 static const double NEARLY = 0.02;    /* of their lengths, likewise, as chords have them */
-static const double AHEAD = 0.95;     /* cosine to a bifurcation that lies on the way */
 static const double ARRIVING = 0.5;   /* cosine to the path by which a walk came to a bifurcation */
 
 static bool is_known_fork(const strut_path_walk *walk, const double *unknowns) {
@@ -117,19 +116,16 @@ static bool leave_fork(strut_path_walk *walk, const strut_path_fork *fork,
   return !walk->failed;
 }
 
-/* The way by which a walk has come to a bifurcation need not be walked again. False: there is none within `most`. */
-static bool mark_arrival(const strut_path_walk *walk, strut_path_fork *fork, const double *from,
-                         double most) {
-  double distance = strut_path_distance(walk, from, fork->y);
+/* The way by which the latest step has come to a bifurcation need not be walked again. */
+static void mark_arrival(const strut_path_walk *walk, strut_path_fork *fork) {
+  double distance = strut_path_distance(walk, walk->last, fork->y), most = ARRIVING;
   strut_path_ray *own = NULL;
   for (int32_t k = 0; k < fork->rays.count && distance > 0; k++) {
-    double along = 0;
-    for (int32_t i = 0; i <= walk->system.n; i++)
-      along += fork->rays.ray[k].direction[i] * (from[i] - fork->y[i]) / distance;
-    if (along > most) most = along, own = &fork->rays.ray[k];
+    const double *way = fork->rays.ray[k].direction;
+    double along = strut_path_dot(walk, way, walk->last) - strut_path_dot(walk, way, fork->y);
+    if (along / distance > most) most = along / distance, own = &fork->rays.ray[k];
   }
   if (own) own->done = true;
-  return own != NULL;
 }
 
 /* Distance of a bifurcation to the latest step of the walk, a cubic. */
@@ -148,49 +144,19 @@ static double passing_distance(const strut_path_walk *walk, const double *unknow
   return least / length;
 }
 
-static void remark_joined(strut_path_walk *walk, const strut_path_fork *fork) {
-  strut_path *path = walk->path;
-  char joined[40] = "the path", at[STRUT_PATH_TEXT];
-  if (fork->path) snprintf(joined, sizeof joined, "branch %d", (int)fork->path);
-  snprintf(path->remark, sizeof path->remark, "joins %s at the bifurcation at %s", joined,
-           strut_path_at(walk, fork->factor, at));
-}
-
-/* Can the branch end at this bifurcation? It begins at `origin`. */
-static bool may_join(const strut_path_walk *walk, const strut_path_fork *fork,
-                     const strut_path_fork *origin) {
-  return fork->path != walk->forks.path && (fork != origin || walk->path->point_count >= 5);
-}
-
-/* Ends the branch at a bifurcation that its next step would pass: there it has been walked, too. */
-static bool reach_fork(strut_path_walk *walk, const strut_path_fork *origin) {
-  for (size_t k = 0; k < walk->forks.count; k++) {
-    strut_path_fork *fork = &walk->forks.fork[k];
-    double distance = strut_path_distance(walk, fork->y, walk->y), ahead = 0;
-    if (!may_join(walk, fork, origin) || !(distance > 0) ||
-        distance > fmax(1.2 * walk->step, 2.0 * fork->rays.radius))
-      continue;
-    for (int32_t i = 0; i <= walk->system.n; i++)
-      ahead += walk->tangent[i] * (fork->y[i] - walk->y[i]) / distance;
-    if (ahead < AHEAD || !mark_arrival(walk, fork, walk->y, AHEAD)) continue;
-    memcpy(walk->last, walk->y, strut_path_bytes(walk));
-    walk->last_arc = walk->arc;
-    strut_path_end_within(walk, fork->y, STRUT_PATH_JOINED);
-    remark_joined(walk, fork);
-    return true;
-  }
-  return false;
-}
-
-/* The same of one that its last step has passed. */
+/* Ends the branch, which begins at `origin`, at a bifurcation that its last step has passed: there it has been walked. */
 static bool join_fork(strut_path_walk *walk, const strut_path_fork *origin) {
   for (size_t k = 0; k < walk->forks.count; k++) {
     strut_path_fork *fork = &walk->forks.fork[k];
-    if (!may_join(walk, fork, origin)) continue;
-    if (passing_distance(walk, fork->y) > PASSING + 1.0 / PLACES) continue;
-    mark_arrival(walk, fork, walk->last, ARRIVING);
+    if (fork->path == walk->forks.path || (fork == origin && walk->path->point_count < 5) ||
+        passing_distance(walk, fork->y) > PASSING + 1.0 / PLACES)
+      continue;
+    mark_arrival(walk, fork);
     strut_path_end_within(walk, fork->y, STRUT_PATH_JOINED);
-    remark_joined(walk, fork);
+    char joined[40] = "the path", at[STRUT_PATH_TEXT];
+    if (fork->path) snprintf(joined, sizeof joined, "branch %d", (int)fork->path);
+    snprintf(walk->path->remark, sizeof walk->path->remark, "joins %s at the bifurcation at %s",
+             joined, strut_path_at(walk, fork->factor, at));
     return true;
   }
   return false;
@@ -204,7 +170,6 @@ static void walk_branch(strut_path_walk *walk, const strut_path_fork *origin,
   walk->path->end = STRUT_PATH_STEPS;
   for (int32_t i = 0; i < steps && !walk->failed && !strut_experiment_interrupted(experiment);
        i++) {
-    if (reach_fork(walk, origin)) break;
     bool on = strut_path_walk_step(walk);
     if (walk->failed || join_fork(walk, origin) || !on) break;
   }

@@ -144,6 +144,7 @@ static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way
 static const double HANGING = 1e-15;
 static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
 static const double NEARBY = 1e-6; /* largest correction of the start */
+static const double SAME = 1e-5;   /* [units of y] an event so near an end is that end */
 static const double ALONG = 0.9;   /* cosine of tangents of one way through a point */
 
 double strut_path_dot(const strut_path_walk *walk, const double *first, const double *second) {
@@ -436,7 +437,7 @@ void strut_path_end_within(strut_path_walk *walk, const double *unknowns, strut_
   walk->arc = walk->last_arc + strut_path_distance(walk, walk->last, unknowns);
   while (path->point_count > 1 && path->points[path->point_count - 1].at.arc > walk->last_arc)
     path->point_count--;
-  while (path->event_count > 0 && path->events[path->event_count - 1].at.arc > walk->arc)
+  while (path->event_count > 0 && path->events[path->event_count - 1].at.arc > walk->arc - SAME)
     path->event_count--;
   memcpy(walk->y, unknowns, strut_path_bytes(walk));
   strut_path_add_point(walk, path->points[path->point_count - 1].negative);
