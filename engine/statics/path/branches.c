@@ -17,21 +17,12 @@ static const double ALIKE = 1e-6;     /* of the range: values of the parameter o
 static const double NEARLY = 0.02;    /* of their lengths, likewise, as chords have them */
 static const double ARRIVING = 0.5;   /* cosine to the path by which a walk came to a bifurcation */
 
-static bool is_known_fork(const strut_path_walk *walk, const double *unknowns) {
-  for (size_t k = 0; k < walk->forks.count; k++)
-    if (walk->forks.fork[k].path != walk->forks.path &&
-        strut_path_distance(walk, walk->forks.fork[k].y, unknowns) < SAME_FORK)
-      return true;
-  return false;
-}
-
 bool strut_path_wants_fork(strut_path_walk *walk, const double *unknowns) {
-  if (!walk->forks.fork || walk->forks.depth >= walk->system.parameter.options->branches ||
-      is_known_fork(walk, unknowns))
+  if (!walk->forks.fork || walk->forks.depth >= walk->system.parameter.options->branches)
     return false;
   for (size_t k = 0; k < walk->forks.count; k++) /* its sphere has all that leaves this one, too */
     if (strut_path_distance(walk, walk->forks.fork[k].y, unknowns) <
-        walk->forks.fork[k].rays.radius)
+        fmax(walk->forks.fork[k].rays.radius, SAME_FORK))
       return false;
   if (walk->forks.count < STRUT_PATH_FORKS) return true;
   walk->forks.left++;
@@ -191,19 +182,18 @@ static bool are_twins(const strut_path_walk *walk, const strut_path *first,
                       const strut_path *second) {
   const strut_path_point *point = &first->points[first->point_count - 1],
                          *t = &second->points[second->point_count - 1];
-  double range = fabs(walk->system.parameter.range);
-  double moved = change_along(first, walk->system.model->length);
-  if (first->event_count != second->event_count || first->end != second->end ||
-      point->negative != t->negative || fabs(point->at.factor - t->at.factor) > ALIKE * range ||
-      fabs(point->at.arc - t->at.arc) > NEARLY * point->at.arc ||
-      fabs(moved - change_along(second, walk->system.model->length)) > ALIKE * moved)
-    return false;
-  for (size_t k = 0; k < first->event_count; k++)
-    if (fabs(first->events[k].at.factor - second->events[k].at.factor) > ALIKE * range ||
-        first->events[k].kind != second->events[k].kind ||
-        first->events[k].after != second->events[k].after)
-      return false;
-  return true;
+  int32_t length = walk->system.model->length;
+  double least = ALIKE * fabs(walk->system.parameter.range), moved = change_along(first, length);
+  bool alike = first->event_count == second->event_count && first->end == second->end &&
+               point->negative == t->negative && fabs(point->at.factor - t->at.factor) <= least &&
+               fabs(point->at.arc - t->at.arc) <= NEARLY * point->at.arc &&
+               fabs(moved - change_along(second, length)) <= ALIKE * moved;
+  for (size_t k = 0; k < first->event_count && alike; k++) {
+    const strut_path_event *one = &first->events[k], *other = &second->events[k];
+    alike = fabs(one->at.factor - other->at.factor) <= least && one->kind == other->kind &&
+            one->after == other->after;
+  }
+  return alike;
 }
 
 static void add_remark(strut_path *path, const char *what) {
