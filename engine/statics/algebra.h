@@ -27,6 +27,9 @@
  */
 STRUT_API bool strut_eigen(double *matrix, int32_t n, double *value, double *work);
 
+/** The same with values ascending: vector (n, n) has the unit vector of value i in row i; equal values keep their order. */
+bool strut_eigen_ascending(double *matrix, int32_t n, double *value, double *vector);
+
 /**
  * Of matrix (n, n), which it overwrites: value (n) ascending, and the unit vector of value i as row
  * i of vector (n, n), its largest entry positive. False: out of memory.

@@ -8,6 +8,7 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/model/algebra/hot.h"
@@ -168,6 +169,20 @@ bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
   accumulate(matrix, n, value, work);
   if (!diagonalise(matrix, n, value, work)) return false;
   for (size_t i = 0; i < n && power; i++) value[i] = ldexp(value[i], power);
+  return true;
+}
+
+bool strut_eigen_ascending(double *matrix, int32_t n, double *value, double *vector) {
+  size_t rows = (size_t)n, bytes = rows * sizeof *vector;
+  if (!strut_eigen(matrix, n, value, vector)) return false; /* its first row is scratch */
+  for (size_t i = 0; i < rows; i++) {
+    size_t k = i;
+    double own = value[i];
+    for (; k > 0 && value[k - 1] > own; k--) value[k] = value[k - 1];
+    value[k] = own;
+    memmove(vector + (k + 1) * rows, vector + k * rows, (i - k) * bytes);
+    memcpy(vector + k * rows, matrix + i * rows, bytes);
+  }
   return true;
 }
 

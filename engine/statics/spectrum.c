@@ -11,13 +11,11 @@ struct strut_spectrum_workspace {
   const strut_potential *potential;
   double least;  /* of the spectrum at hand [N] */
   bool uneven;   /* stiffnesses differ by so much that the dense solver may lose the soft ones */
-  double *dense; /* (n, n) */
-  double *soft;  /* (n, n) room for the form on soft modes, then its eigenvectors */
-  double *raw, *value, *noise;         /* (n) */
-  double *work;                        /* (n) */
+  double *dense; /* (n, n) the Hessian; eigenvectors of the form on soft modes */
+  double *soft;  /* (n, n) room for this form */
+  double *value, *noise;               /* (n) */
   double *vector, *turned;             /* (n, n) */
   double *along, *across, *form_noise; /* (n) of one force in each soft mode; noise of the form */
-  int32_t *order;                      /* (n) */
 };
 
 static bool is_uneven(const strut_model *model) {
@@ -33,23 +31,14 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
                                                 strut_arena *arena) {
   strut_spectrum_workspace *room = strut_arena_allocate(arena, 1, sizeof *room);
   size_t n = (size_t)potential->n;
-  if (!room || !STRUT_ALLOCATE(arena, STRUT_NEW(room->order, n)) ||
+  if (!room ||
       !STRUT_NUMBERS(arena, n * n, &room->dense, &room->soft, &room->vector, &room->turned) ||
-      !STRUT_NUMBERS(arena, n, &room->raw, &room->value, &room->noise, &room->work, &room->along,
-                     &room->across, &room->form_noise))
+      !STRUT_NUMBERS(arena, n, &room->value, &room->noise, &room->along, &room->across,
+                     &room->form_noise))
     return NULL;
   room->potential = potential;
   room->uneven = is_uneven(potential->model);
   return room;
-}
-
-/* The order of values from small to large; equal ones keep theirs. */
-static void sort_order(const double *value, int32_t n, int32_t *order) {
-  for (int32_t i = 0; i < n; i++) {
-    int32_t k = i;
-    for (; k > 0 && value[order[k - 1]] > value[i]; k--) order[k] = order[k - 1];
-    order[k] = i;
-  }
 }
 
 static bool fill_dense(const strut_sparse *matrix, strut_spectrum_workspace *room) {
@@ -173,20 +162,17 @@ static bool refine(strut_spectrum_workspace *room, const double *q, int32_t coun
     strut_mode_form_add(&form, force, q);
   for (size_t i = 0; i < m; i++)
     for (size_t k = 0; k < i; k++) room->soft[k * m + i] = room->soft[i * m + k];
-  if (!strut_eigen(room->soft, count, room->raw, room->work)) return false;
-  sort_order(room->raw, count, room->order);
-  double largest = fmax(fabs(room->raw[room->order[0]]), fabs(room->raw[room->order[m - 1]]));
+  if (!strut_eigen_ascending(room->soft, count, room->value, room->dense)) return false;
+  double largest = fmax(fabs(room->value[0]), fabs(room->value[m - 1]));
   memset(room->turned, 0, m * n * sizeof *room->turned);
   for (size_t i = 0; i < m; i++) {
-    size_t column = (size_t)room->order[i];
     double noise = count * DBL_EPSILON * largest; /* of the dense solver, among the soft modes */
     for (size_t k = 0; k < m; k++) {
-      double weight = room->soft[column * m + k];
+      double weight = room->dense[i * m + k];
       noise += weight * weight * room->form_noise[k];
       for (size_t at = 0; at < n; at++)
         room->turned[i * n + at] += weight * room->vector[k * n + at];
     }
-    room->value[i] = room->raw[column];
     room->noise[i] = noise;
   }
   memcpy(room->vector, room->turned, m * n * sizeof *room->vector);
@@ -207,15 +193,9 @@ bool strut_spectrum_compute(strut_spectrum_workspace *room, const strut_sparse *
   *spectrum = (strut_spectrum){n, room->value, room->vector, room->noise};
   if (n == 0) return true;
   room->least = least;
-  if (!fill_dense(hessian, room) || !strut_eigen(room->dense, n, room->raw, room->work))
+  if (!fill_dense(hessian, room) ||
+      !strut_eigen_ascending(room->dense, n, room->value, room->vector))
     return false;
-  sort_order(room->raw, n, room->order);
-  size_t rows = (size_t)n;
-  for (size_t i = 0; i < rows; i++) {
-    room->value[i] = room->raw[room->order[i]];
-    memcpy(room->vector + i * rows, room->dense + (size_t)room->order[i] * rows,
-           rows * sizeof *room->vector);
-  }
   double largest = fmax(fabs(room->value[0]), fabs(room->value[n - 1]));
   for (int32_t i = 0; i < n; i++) {
     room->noise[i] = n * DBL_EPSILON * largest;

@@ -15,48 +15,51 @@ static const double SAME_FORK = 1e-5; /* two bifurcations so near are one [units
 static const double PASSING = 0.02;   /* of a step: a branch so near a bifurcation passes it */
 static const double ALIKE = 1e-6;     /* of the range: values of the parameter on twins */
 static const double NEARLY = 0.02;    /* of their lengths, likewise, as chords have them */
-static const double AHEAD = 0.95;     /* cosine to a bifurcation that lies on the way */
 static const double ARRIVING = 0.5;   /* cosine to the path by which a walk came to a bifurcation */
 
-static bool is_known_fork(const strut_path_walk *walk, const double *unknowns) {
-  for (size_t k = 0; k < walk->forks.count; k++)
-    if (walk->forks.fork[k].path != walk->forks.path &&
-        strut_path_distance(walk, walk->forks.fork[k].y, unknowns) < SAME_FORK)
-      return true;
-  return false;
-}
-
 bool strut_path_wants_fork(strut_path_walk *walk, const double *unknowns) {
-  if (!walk->forks.fork || walk->forks.depth >= walk->system.parameter.options->branches ||
-      is_known_fork(walk, unknowns))
+  if (!walk->forks.fork || walk->forks.depth >= walk->system.parameter.options->branches)
     return false;
   for (size_t k = 0; k < walk->forks.count; k++) /* its sphere has all that leaves this one, too */
     if (strut_path_distance(walk, walk->forks.fork[k].y, unknowns) <
-        walk->forks.fork[k].rays.radius)
+        fmax(walk->forks.fork[k].rays.radius, SAME_FORK))
       return false;
   if (walk->forks.count < STRUT_PATH_FORKS) return true;
   walk->forks.left++;
   return false;
 }
 
-bool strut_path_freeze(const strut_path_system *system, strut_arena *arena,
-                       strut_path_frozen *frozen) {
+bool strut_path_freeze(const strut_path_walk *walk, strut_arena *arena, strut_path_frozen *frozen) {
+  const strut_path_system *system = &walk->system;
   const strut_model *model = system->model;
-  *frozen = (strut_path_frozen){system->latest.pulling, system->contacts.contact,
-                                system->elements.element};
+  size_t numbers = 2 * ((size_t)system->n + 1);
+  *frozen = (strut_path_frozen){system->lends,
+                                system->latest.pulling,
+                                system->contacts.contact,
+                                system->elements.element,
+                                walk->y,
+                                walk->next,
+                                walk->tangent};
   return STRUT_DUPLICATE(arena, STRUT_NEW(frozen->pulling, model->members.count),
                          STRUT_NEW(frozen->contact, model->contacts.count),
-                         STRUT_NEW(frozen->element, model->elements.count));
+                         STRUT_NEW(frozen->element, model->elements.count),
+                         STRUT_NEW(frozen->y, numbers), STRUT_NEW(frozen->next, numbers),
+                         STRUT_NEW(frozen->tangent, numbers));
 }
 
-void strut_path_thaw(strut_path_system *system, const strut_path_frozen *frozen) {
-  size_t contacts = (size_t)system->model->contacts.count,
+void strut_path_thaw(strut_path_walk *walk, const strut_path_frozen *frozen) {
+  strut_path_system *system = &walk->system;
+  size_t contacts = (size_t)system->model->contacts.count, bytes = strut_path_bytes(walk),
          elements = (size_t)system->model->elements.count;
+  system->lends = frozen->lends;
   memcpy(system->latest.pulling, frozen->pulling, (size_t)system->model->members.count);
   if (contacts)
     memcpy(system->contacts.contact, frozen->contact, contacts * sizeof *frozen->contact);
   if (elements)
     memcpy(system->elements.element, frozen->element, elements * sizeof *frozen->element);
+  memcpy(walk->y, frozen->y, bytes);
+  memcpy(walk->next, frozen->next, bytes);
+  memcpy(walk->tangent, frozen->tangent, bytes);
 }
 
 void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
@@ -72,7 +75,7 @@ void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
                         .path = walk->forks.path,
                         .depth = walk->forks.depth};
   walk->failed =
-      walk->failed || !fork->y || !strut_path_freeze(system, &system->arena, &fork->frozen);
+      walk->failed || !fork->y || !strut_path_freeze(walk, &system->arena, &fork->frozen);
   for (int32_t k = 0; k < rays->count; k++)
     fork->rays.ray[k].done =
         fork->rays.ray[k].own < 0 || &rays->ray[k] == way || (!way && fork->rays.ray[k].own > 0);
@@ -89,7 +92,7 @@ static void forget_directions(strut_path_system *system) {
 static bool leave_fork(strut_path_walk *walk, const strut_path_fork *fork,
                        const strut_path_ray *ray) {
   strut_path_system *system = &walk->system;
-  strut_path_thaw(system, &fork->frozen);
+  strut_path_thaw(walk, &fork->frozen);
   memcpy(walk->y, fork->y, strut_path_bytes(walk));
   forget_directions(system);
   if (!strut_path_tangent(system, ray->y, ray->direction, walk->tangent)) return false;
@@ -104,19 +107,16 @@ static bool leave_fork(strut_path_walk *walk, const strut_path_fork *fork,
   return !walk->failed;
 }
 
-/* The way by which a walk has come to a bifurcation need not be walked again. False: there is none within `most`. */
-static bool mark_arrival(const strut_path_walk *walk, strut_path_fork *fork, const double *from,
-                         double most) {
-  double distance = strut_path_distance(walk, from, fork->y);
+/* The way by which the latest step has come to a bifurcation need not be walked again. */
+static void mark_arrival(const strut_path_walk *walk, strut_path_fork *fork) {
+  double distance = strut_path_distance(walk, walk->last, fork->y), most = ARRIVING;
   strut_path_ray *own = NULL;
   for (int32_t k = 0; k < fork->rays.count && distance > 0; k++) {
-    double along = 0;
-    for (int32_t i = 0; i <= walk->system.n; i++)
-      along += fork->rays.ray[k].direction[i] * (from[i] - fork->y[i]) / distance;
-    if (along > most) most = along, own = &fork->rays.ray[k];
+    const double *way = fork->rays.ray[k].direction;
+    double along = strut_path_dot(walk, way, walk->last) - strut_path_dot(walk, way, fork->y);
+    if (along / distance > most) most = along / distance, own = &fork->rays.ray[k];
   }
   if (own) own->done = true;
-  return own != NULL;
 }
 
 /* Distance of a bifurcation to the latest step of the walk, a cubic. */
@@ -135,49 +135,19 @@ static double passing_distance(const strut_path_walk *walk, const double *unknow
   return least / length;
 }
 
-static void remark_joined(strut_path_walk *walk, const strut_path_fork *fork) {
-  strut_path *path = walk->path;
-  char joined[40] = "the path", at[STRUT_PATH_TEXT];
-  if (fork->path) snprintf(joined, sizeof joined, "branch %d", (int)fork->path);
-  snprintf(path->remark, sizeof path->remark, "joins %s at the bifurcation at %s", joined,
-           strut_path_at(walk, fork->factor, at));
-}
-
-/* Can the branch end at this bifurcation? It begins at `origin`. */
-static bool may_join(const strut_path_walk *walk, const strut_path_fork *fork,
-                     const strut_path_fork *origin) {
-  return fork->path != walk->forks.path && (fork != origin || walk->path->point_count >= 5);
-}
-
-/* Ends the branch at a bifurcation that its next step would pass: there it has been walked, too. */
-static bool reach_fork(strut_path_walk *walk, const strut_path_fork *origin) {
-  for (size_t k = 0; k < walk->forks.count; k++) {
-    strut_path_fork *fork = &walk->forks.fork[k];
-    double distance = strut_path_distance(walk, fork->y, walk->y), ahead = 0;
-    if (!may_join(walk, fork, origin) || !(distance > 0) ||
-        distance > fmax(1.2 * walk->step, 2.0 * fork->rays.radius))
-      continue;
-    for (int32_t i = 0; i <= walk->system.n; i++)
-      ahead += walk->tangent[i] * (fork->y[i] - walk->y[i]) / distance;
-    if (ahead < AHEAD || !mark_arrival(walk, fork, walk->y, AHEAD)) continue;
-    memcpy(walk->last, walk->y, strut_path_bytes(walk));
-    walk->last_arc = walk->arc;
-    strut_path_end_within(walk, fork->y, STRUT_PATH_JOINED);
-    remark_joined(walk, fork);
-    return true;
-  }
-  return false;
-}
-
-/* The same of one that its last step has passed. */
+/* Ends the branch, which begins at `origin`, at a bifurcation that its last step has passed: there it has been walked. */
 static bool join_fork(strut_path_walk *walk, const strut_path_fork *origin) {
   for (size_t k = 0; k < walk->forks.count; k++) {
     strut_path_fork *fork = &walk->forks.fork[k];
-    if (!may_join(walk, fork, origin)) continue;
-    if (passing_distance(walk, fork->y) > PASSING + 1.0 / PLACES) continue;
-    mark_arrival(walk, fork, walk->last, ARRIVING);
+    if (fork->path == walk->forks.path || (fork == origin && walk->path->point_count < 5) ||
+        passing_distance(walk, fork->y) > PASSING + 1.0 / PLACES)
+      continue;
+    mark_arrival(walk, fork);
     strut_path_end_within(walk, fork->y, STRUT_PATH_JOINED);
-    remark_joined(walk, fork);
+    char joined[40] = "the path", at[STRUT_PATH_TEXT];
+    if (fork->path) snprintf(joined, sizeof joined, "branch %d", (int)fork->path);
+    snprintf(walk->path->remark, sizeof walk->path->remark, "joins %s at the bifurcation at %s",
+             joined, strut_path_at(walk, fork->factor, at));
     return true;
   }
   return false;
@@ -191,7 +161,6 @@ static void walk_branch(strut_path_walk *walk, const strut_path_fork *origin,
   walk->path->end = STRUT_PATH_STEPS;
   for (int32_t i = 0; i < steps && !walk->failed && !strut_experiment_interrupted(experiment);
        i++) {
-    if (reach_fork(walk, origin)) break;
     bool on = strut_path_walk_step(walk);
     if (walk->failed || join_fork(walk, origin) || !on) break;
   }
@@ -213,19 +182,18 @@ static bool are_twins(const strut_path_walk *walk, const strut_path *first,
                       const strut_path *second) {
   const strut_path_point *point = &first->points[first->point_count - 1],
                          *t = &second->points[second->point_count - 1];
-  double range = fabs(walk->system.parameter.range);
-  double moved = change_along(first, walk->system.model->length);
-  if (first->event_count != second->event_count || first->end != second->end ||
-      point->negative != t->negative || fabs(point->at.factor - t->at.factor) > ALIKE * range ||
-      fabs(point->at.arc - t->at.arc) > NEARLY * point->at.arc ||
-      fabs(moved - change_along(second, walk->system.model->length)) > ALIKE * moved)
-    return false;
-  for (size_t k = 0; k < first->event_count; k++)
-    if (fabs(first->events[k].at.factor - second->events[k].at.factor) > ALIKE * range ||
-        first->events[k].kind != second->events[k].kind ||
-        first->events[k].after != second->events[k].after)
-      return false;
-  return true;
+  int32_t length = walk->system.model->length;
+  double least = ALIKE * fabs(walk->system.parameter.range), moved = change_along(first, length);
+  bool alike = first->event_count == second->event_count && first->end == second->end &&
+               point->negative == t->negative && fabs(point->at.factor - t->at.factor) <= least &&
+               fabs(point->at.arc - t->at.arc) <= NEARLY * point->at.arc &&
+               fabs(moved - change_along(second, length)) <= ALIKE * moved;
+  for (size_t k = 0; k < first->event_count && alike; k++) {
+    const strut_path_event *one = &first->events[k], *other = &second->events[k];
+    alike = fabs(one->at.factor - other->at.factor) <= least && one->kind == other->kind &&
+            one->after == other->after;
+  }
+  return alike;
 }
 
 static void add_remark(strut_path *path, const char *what) {

@@ -212,8 +212,6 @@ static void gradient_in(const strut_path_system *system, const strut_path_terms 
 static void find_rate(const strut_path_system *system, int32_t i, double rate[2]) {
   const strut_path_parameter *parameter = &system->parameter;
   double below[2], above[2];
-  rate[0] = rate[1] = 0.0;
-  if (parameter->options->over != STRUT_PATH_OVER_SCENE) return;
   const strut_contact_pose low = pose_in(system, &parameter->low, i),
                            high = pose_in(system, &parameter->high, i);
   gradient_in(system, &parameter->low, i, &low, below);
@@ -315,15 +313,15 @@ static double rate_of(const strut_path_system *system, uint32_t at, const double
   return free >= 0 ? tangent[free] : tangent[system->n] * moved;
 }
 
-/* Corrects walk->y, with row . y as it is; false: it does not converge. A row of zeros changes nothing. */
+/* Corrects walk->y, with row . y as it is; false: it does not converge, and stays. A row of zeros changes nothing. */
 static bool jump(strut_path_walk *walk, const double *row) {
   int32_t count = walk->system.n + 1;
-  double place = strut_path_dot(walk, row, walk->y);
+  double place = strut_path_dot(walk, row, walk->y) + strut_path_dot(walk, row, walk->y + count);
   if (!(strut_path_dot(walk, row, row) > 0.0)) return true;
-  for (int32_t k = 0; k < count; k++) place += row[k] * walk->y[count + k];
-  memcpy(walk->spare, walk->y, strut_path_bytes(walk));
-  if (strut_path_correct(&walk->system, row, place, walk->y) < 0) return false;
-  walk->arc += strut_path_distance(walk, walk->spare, walk->y);
+  memcpy(walk->next, walk->y, strut_path_bytes(walk));
+  if (strut_path_correct(&walk->system, row, place, walk->next) < 0) return false;
+  walk->arc += strut_path_distance(walk, walk->next, walk->y);
+  memcpy(walk->y, walk->next, strut_path_bytes(walk));
   return true;
 }
 
@@ -343,23 +341,27 @@ static void change_facet(strut_path_system *system, int32_t i, double *row) {
 }
 
 /*
- * Goes on from walk->y along walk->next_tangent, and reports what happened there and, unless it is within `least`, the
- * jump of the parameter from a value.
+ * Goes on from walk->y along the row, or on if that is zero, and reports what happened there and, unless it is within
+ * `least`, the jump of the parameter from a value. False: no tangent leads on.
  */
-static void finish_jump(strut_path_walk *walk, strut_path_event_kind kind, int32_t index,
-                        double from, double least, const char *what) {
+static bool finish_jump(strut_path_walk *walk, const double *row, strut_path_event_kind kind,
+                        int32_t index, double from, double least, const char *what) {
   strut_path_system *system = &walk->system;
   int32_t before = walk->negative;
   double turn = walk->tangent[system->n], to = strut_path_value(system, walk->y);
   char detail[300];
+  bool leads = strut_path_dot(walk, row, row) > 0.0;
+  if (!strut_path_tangent(system, walk->y, leads ? row : walk->tangent, walk->next_tangent))
+    return false;
   int used = snprintf(detail, sizeof detail, "%s", what);
   if (!(fabs(to - from) <= least))
     snprintf(detail + used, sizeof detail - (size_t)used, ": %s jumps from %.6g to %.6g there",
              strut_path_subject(walk), from, to);
-  memcpy(walk->tangent, walk->next_tangent, ((size_t)system->n + 1) * sizeof *walk->tangent);
+  memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk) / 2);
   strut_path_count_negative(walk);
   strut_path_add_event(walk, kind, walk->y, index, before, walk->negative, detail);
   strut_path_report_exchange(walk, turn, before);
+  return true;
 }
 
 /*
@@ -374,15 +376,10 @@ bool strut_path_pass_corner(strut_path_walk *walk, int32_t i) {
   char what[200];
   strut_path_evaluate(system, walk->y);
   strut_path_add_point(walk, walk->negative);
-  change_facet(system, i, row);
-  bool held = !(strut_path_dot(walk, row, row) > 0.0); /* the ground moves under a support */
-  if (!jump(walk, row) ||
-      !strut_path_tangent(system, walk->y, held ? walk->tangent : row, walk->next_tangent))
-    return false;
+  change_facet(system, i, row); /* zeros: the ground moves under a support */
   snprintf(what, sizeof what, "%s passes a corner of %s", system->model->scene->nodes[node].name,
            strut_path_ground_name(system, i));
-  finish_jump(walk, STRUT_PATH_CORNER, node, value, -1.0, what);
-  return true;
+  return jump(walk, row) && finish_jump(walk, row, STRUT_PATH_CORNER, node, value, -1.0, what);
 }
 
 /* Do supports keep the two nodes of a member on its line? */
@@ -404,33 +401,29 @@ bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member) {
   strut_path_system *system = &walk->system;
   const strut_member_table *members = &system->model->members;
   double *ahead = &system->latest.ahead[2 * member], *row = walk->trial;
-  double value = strut_path_value(system, walk->y), arc = walk->arc,
-         beyond[2] = {-ahead[0], -ahead[1]};
+  double value = strut_path_value(system, walk->y);
   char what[200];
   strut_path_evaluate(system, walk->y);
   if (fabs(system->force[member].pose.strain) > STRUT_PATH_EVEN * system->size) return false;
-  memset(row, 0, ((size_t)system->n + 1) * sizeof *row);
-  for (uint32_t c = 0; c < 2; c++) {
-    ahead[c] = beyond[c];
-    add_to_row(system, members->to[member] + c, beyond[c], row);
-    add_to_row(system, members->from[member] + c, -beyond[c], row);
-  }
-  memcpy(walk->next, walk->y, strut_path_bytes(walk));
-  bool found = jump(walk, row) && strut_path_tangent(system, walk->y, row, walk->next_tangent);
-  bool still = true;
-  for (int32_t i = 0; i < system->n; i++) still = still && fabs(walk->y[i] - walk->next[i]) < STILL;
-  memcpy(walk->trial, walk->y, strut_path_bytes(walk));
-  memcpy(walk->y, walk->next, strut_path_bytes(walk));
-  if (!found || !(still || is_kept_on_line(system, member, beyond))) return false;
-  double jumped = walk->arc;
-  ahead[0] = -beyond[0], ahead[1] = -beyond[1], walk->arc = arc;
   strut_path_add_point(walk, walk->negative);
-  memcpy(ahead, beyond, sizeof beyond), walk->arc = jumped;
-  memcpy(walk->y, walk->trial, strut_path_bytes(walk));
+  memset(row, 0, strut_path_bytes(walk));
+  for (uint32_t c = 0; c < 2; c++) {
+    ahead[c] = -ahead[c];
+    add_to_row(system, members->to[member] + c, ahead[c], row);
+    add_to_row(system, members->from[member] + c, -ahead[c], row);
+  }
+  memcpy(walk->spare, walk->y, strut_path_bytes(walk));
+  bool found = jump(walk, row), still = true;
+  for (int32_t i = 0; i < system->n; i++)
+    still = still && fabs(walk->y[i] - walk->spare[i]) < STILL;
+  if (!found || !(still || is_kept_on_line(system, member, ahead))) {
+    memcpy(walk->y, walk->spare, strut_path_bytes(walk));
+    walk->path->point_count--;
+    return false;
+  }
   snprintf(what, sizeof what, "%s shrinks to nothing and its force turns round",
            system->model->scene->members[member].name);
-  finish_jump(walk, STRUT_PATH_ZERO_LENGTH, member, value, -1.0, what);
-  return true;
+  return finish_jump(walk, row, STRUT_PATH_ZERO_LENGTH, member, value, -1.0, what);
 }
 
 /* The direction of a contact's tangent, over the unknowns. */
@@ -472,13 +465,9 @@ bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *be
   fill_row(system, i, row);
   /* against the kinetic coefficient it takes less to hold the node where it is */
   if (slips && !jump(walk, row)) return false;
-  for (int32_t k = 0; k <= system->n; k++) row[k] *= own->direction;
-  bool leads = strut_path_dot(walk, row, row) > 0.0; /* its direction is where it slides to */
-  if (!strut_path_tangent(system, walk->y, leads ? row : walk->tangent, walk->next_tangent))
-    return false;
+  for (int32_t k = 0; k <= system->n; k++) row[k] *= own->direction; /* 0: it sticks */
   snprintf(what, sizeof what, "%s %s %s", system->model->scene->nodes[node].name,
            slips ? "begins to slide on" : "sticks to", strut_path_ground_name(system, i));
-  finish_jump(walk, slips ? STRUT_PATH_SLIP : STRUT_PATH_STICK, node, value,
-              SMALL * fabs(system->parameter.range), what);
-  return true;
+  return finish_jump(walk, row, slips ? STRUT_PATH_SLIP : STRUT_PATH_STICK, node, value,
+                     SMALL * fabs(system->parameter.range), what);
 }

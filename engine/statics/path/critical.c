@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Limit points and bifurcations: where eigenvalues of the stiffness pass zero on a piece of a path. */
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_sort_vector.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,28 +17,24 @@ static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue 
 static const double LEVEL = 1e-3;  /* rate of the parameter along a path that may be at its limit */
 static const double ONWARD = 0.02; /* change of the parameter over a branch that continues */
 
-int32_t strut_path_most_moved(const strut_path_system *system, const gsl_vector *vector) {
+int32_t strut_path_most_moved(const strut_path_system *system, const double *mode) {
   int32_t best = 0;
   double most = -1;
   for (int32_t i = 0; i < system->n; i++) {
     int32_t at = system->potential->coordinate[i];
-    double moved = gsl_vector_get(vector, (size_t)i), square = moved * moved;
-    if (i > 0 && system->potential->coordinate[i - 1] == at - 1 && at % 2 == 1) {
-      double other = gsl_vector_get(vector, (size_t)(i - 1));
-      square += other * other;
-    }
+    double square = mode[i] * mode[i];
+    if (i > 0 && system->potential->coordinate[i - 1] == at - 1 && at % 2 == 1)
+      square += mode[i - 1] * mode[i - 1];
     if (square > most * (1 + 1e-9)) most = square, best = at / 2;
   }
   return best;
 }
 
 /* The share of a unit vector that the parameter works on. */
-static double coupling(const strut_path_system *system, const gsl_vector *vector) {
-  double work = 0, load = 0;
-  for (int32_t i = 0; i < system->n; i++)
-    work += system->latest.slope[i] * gsl_vector_get(vector, (size_t)i),
-        load += system->latest.slope[i] * system->latest.slope[i];
-  return load > 0 ? fabs(work) / sqrt(load) : 0;
+static double coupling(const strut_path_system *system, const double *mode) {
+  const double *slope = system->latest.slope;
+  double load = strut_dot(slope, slope, system->n);
+  return load > 0 ? fabs(strut_dot(slope, mode, system->n)) / sqrt(load) : 0;
 }
 
 bool strut_path_turns_back(const strut_path_walk *walk) {
@@ -62,11 +59,11 @@ static int32_t count_null(strut_path_walk *walk, const strut_path_piece *piece,
   int32_t count = 0;
   for (int32_t i = 0; i < system->n; i++) walk->scale[i] = 0;
   for (int end = 0; end < 2; end++) {
-    if (!strut_path_spectrum(system, end ? piece->to : piece->from, STRUT_PATH_VALUES)) return 0;
+    if (!strut_path_spectrum(system, end ? piece->to : piece->from)) return 0;
     for (int32_t i = 0; i < system->n; i++)
       walk->scale[i] = fmax(walk->scale[i], fabs(system->spectrum.value[i]));
   }
-  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_VECTORS)) return 0;
+  if (!strut_path_spectrum(system, unknowns)) return 0;
   for (int32_t i = 0; i < system->n; i++)
     if (fabs(system->spectrum.value[i]) <= VANISHED * walk->scale[i])
       if (!count++) *first = i;
@@ -140,9 +137,8 @@ static bool meet_critical(strut_path_walk *walk, const strut_path_piece *piece,
   }
   if (self->null < abs(crossed)) self->null = abs(crossed);
   for (int32_t k = first; k < first + self->null && k < system->n; k++) {
-    gsl_vector_const_view null = gsl_matrix_const_column(system->algebra.vectors, (size_t)k);
-    works = fmax(works, coupling(system, &null.vector));
-    if (k == first) self->node = strut_path_most_moved(system, &null.vector);
+    works = fmax(works, coupling(system, strut_path_mode(system, k)));
+    if (k == first) self->node = strut_path_most_moved(system, strut_path_mode(system, k));
   }
   /* what the parameter works on turns it back, though by less than rounding where a kink is near */
   double rate = fmin(fabs(walk->tangent[system->n]), fabs(walk->next_tangent[system->n]));
@@ -182,7 +178,7 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *wh
                                strut_path_ray *way) {
   strut_path_system *system = &walk->system;
   const strut_path_piece part = narrowed(walk, whole), *piece = &part;
-  if (!strut_path_spectrum(system, whole->to, STRUT_PATH_SIGNS)) return false;
+  if (!strut_path_spectrum(system, whole->to)) return false;
   int32_t before = walk->negative, after = system->spectrum.negative,
           folded = system->spectrum.folded;
   int32_t sense = after > before ? 1 : -1, count = sense * (after - before), i = 0;
@@ -228,33 +224,24 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *wh
 enum { MOST_SOFT = 40 };
 
 static const double SOFT = 1e-6;        /* of the largest eigenvalue: few digits are left */
-static const double UNSIGNED = 1e-12;   /* likewise: not even the sign is sure */
 static const double ZERO_VALUE = 1e-13; /* of a soft mode's largest parts: no sign below this */
-static const double NO_VALUE = 1e-20;   /* of the largest eigenvalue, likewise */
+static const double NO_VALUE = 1e-15;   /* of the largest eigenvalue, likewise */
 static const double ROUNDING = 2e-16;   /* of a double */
 static const double NEUTRAL =
     1e-9; /* likewise: a motion that an event has found without stiffness */
 static const double UNSTRESSED =
     1e-10; /* of the largest eigenvalue: what rounding lends to a mechanism */
 
-static double held_motion(const strut_path_system *system, int32_t k, size_t mode) {
-  double sum = 0;
-  for (int32_t i = 0; i < system->n; i++)
-    sum += system->held.motion[k * system->n + i] *
-           gsl_matrix_get(system->algebra.vectors, (size_t)i, mode);
-  return sum;
-}
-
 /* The stiffness seen by the modes first, first + 1, ...; returns the largest part that one force has in one of them. */
-static double project(strut_path_system *system, size_t first, size_t count, double *sum) {
+static double project(strut_path_system *system, int32_t first, int32_t count, double *sum) {
   double parts = 0.0, noise[MOST_SOFT] = {0}, along[MOST_SOFT], across[MOST_SOFT];
-  memset(sum, 0, count * count * sizeof *sum);
+  memset(sum, 0, (size_t)(count * count) * sizeof *sum);
   strut_mode_form form = {.model = system->model,
                           .row_of = system->potential->row_of,
-                          .count = (int32_t)count,
-                          .vector = gsl_matrix_ptr(system->algebra.vectors, 0, first),
-                          .mode_step = 1,
-                          .row_step = system->algebra.vectors->tda,
+                          .count = count,
+                          .vector = strut_path_mode(system, first),
+                          .mode_step = (size_t)system->n,
+                          .row_step = 1,
                           .sum = sum,
                           .noise = noise,
                           .along = along,
@@ -263,31 +250,33 @@ static double project(strut_path_system *system, size_t first, size_t count, dou
     const strut_force *force = &system->force[i];
     if (!force->pose.acts) continue;
     strut_mode_form_add(&form, force, system->latest.q);
-    for (size_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; k++)
       parts = fmax(parts, fmax(fabs(force->pose.slope) * along[k] * along[k],
                                fabs(force->across) * across[k] * across[k]));
   }
-  for (int32_t i = 0; i < system->held.count; i++) {
-    for (size_t k = 0; k < count; k++) along[k] = held_motion(system, i, first + k);
-    for (size_t k = 0; k < count; k++)
-      for (size_t l = 0; l <= k; l++) sum[k * count + l] += system->held.by * along[k] * along[l];
-  }
-  for (size_t k = 0; k < count; k++)
-    for (size_t l = 0; l < k; l++) sum[l * count + k] = sum[k * count + l];
+  for (int32_t i = 0; i < system->held.count; i++)
+    for (int32_t k = 0; k < count; k++) {
+      along[k] = strut_dot(system->held.motion + i * system->n, strut_path_mode(system, first + k),
+                           system->n);
+      for (int32_t l = 0; l <= k; l++) sum[k * count + l] += system->held.by * along[k] * along[l];
+    }
+  for (int32_t k = 0; k < count; k++)
+    for (int32_t l = 0; l < k; l++) sum[l * count + k] = sum[k * count + l];
   system->spectrum.soft_parts = form.part;
   return fmax(form.part, parts);
 }
 
 /* Ritz values and vectors in place of the soft eigenvalues; false: out of memory. */
-static bool refine(strut_path_system *system, size_t first, size_t count) {
-  double form[MOST_SOFT * MOST_SOFT], turn[MOST_SOFT * MOST_SOFT], row[MOST_SOFT];
+static bool refine(strut_path_system *system, int32_t first, int32_t count) {
+  double form[MOST_SOFT * MOST_SOFT], turn[MOST_SOFT * MOST_SOFT], column[MOST_SOFT];
+  double *soft = strut_path_mode(system, first);
   project(system, first, count, form);
-  if (!strut_symmetric_eigen(form, count, row, turn)) return false;
-  for (size_t k = 0; k < count; k++) system->spectrum.value[first + k] = row[k];
-  for (size_t i = 0; i < (size_t)system->n; i++) {
-    double *soft = gsl_matrix_ptr(system->algebra.vectors, i, first);
-    memcpy(row, soft, count * sizeof *row);
-    for (size_t k = 0; k < count; k++) soft[k] = strut_dot(turn + k * count, row, (ptrdiff_t)count);
+  if (!strut_symmetric_eigen(form, (size_t)count, system->spectrum.value + first, turn))
+    return false;
+  for (int32_t i = 0; i < system->n; i++) {
+    for (int32_t k = 0; k < count; k++) column[k] = soft[k * system->n + i];
+    for (int32_t k = 0; k < count; k++)
+      soft[k * system->n + i] = strut_dot(turn + k * count, column, count);
   }
   return true;
 }
@@ -300,50 +289,44 @@ static double largest_across(const strut_path_system *system) {
   return most;
 }
 
-static void find_vectors(strut_path_system *system) {
-  gsl_matrix_memcpy(system->algebra.work, system->algebra.hessian);
-  gsl_eigen_symmv(system->algebra.work, system->algebra.values, system->algebra.vectors,
-                  system->algebra.eigen);
-  gsl_eigen_symmv_sort(system->algebra.values, system->algebra.vectors, GSL_EIGEN_SORT_VAL_ASC);
-}
-
 /* The soft eigenvalues are contiguous: index of the first and their number, nearest to zero. */
-static size_t find_soft(const strut_path_system *system, double below, size_t *first) {
-  size_t count = 0, nearest = 0;
-  for (size_t i = 1; i < (size_t)system->n; i++)
-    if (fabs(system->spectrum.value[i]) < fabs(system->spectrum.value[nearest])) nearest = i;
+static int32_t find_soft(const strut_path_system *system, double below, int32_t *first) {
+  const double *value = system->spectrum.value;
+  int32_t count = 0, nearest = 0;
+  for (int32_t i = 1; i < system->n; i++)
+    if (fabs(value[i]) < fabs(value[nearest])) nearest = i;
   *first = nearest;
-  if (fabs(system->spectrum.value[nearest]) > below) return 0;
-  while (*first > 0 && nearest - *first < MOST_SOFT / 2 &&
-         fabs(system->spectrum.value[*first - 1]) <= below)
+  if (fabs(value[nearest]) > below) return 0;
+  while (*first > 0 && nearest - *first < MOST_SOFT / 2 && fabs(value[*first - 1]) <= below)
     --*first;
-  while (*first + count < (size_t)system->n && count < MOST_SOFT &&
-         fabs(system->spectrum.value[*first + count]) <= below)
+  while (*first + count < system->n && count < MOST_SOFT && fabs(value[*first + count]) <= below)
     count++;
   return count;
 }
 
-double strut_path_keep_values(strut_path_walk *walk) {
-  double least = HUGE_VAL, most = 0.0;
-  for (int32_t i = 0; i < walk->system.n; i++) {
-    double value = walk->values[i] = walk->system.spectrum.value[i];
-    least = fmin(least, fabs(value)), most = fmax(most, fabs(value));
-  }
-  if (least > NEUTRAL * most) walk->system.lends = false;
-  return most;
+void strut_path_keep_values(strut_path_walk *walk) {
+  strut_path_system *system = &walk->system;
+  memcpy(walk->values, system->spectrum.value, (size_t)system->n * sizeof *walk->values);
+  if (!strut_path_is_loose(system, NEUTRAL)) system->lends = false;
+}
+
+bool strut_path_is_loose(const strut_path_system *system, double share) {
+  double least = HUGE_VAL;
+  for (int32_t i = 0; i < system->n; i++) least = fmin(least, fabs(system->spectrum.value[i]));
+  return least <= share * strut_path_largest_value(system);
 }
 
 int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,
                                    int32_t *first) {
-  double sum[MOST_SOFT * MOST_SOFT], most = 0.0;
+  double sum[MOST_SOFT * MOST_SOFT];
   int32_t count = 0;
-  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_VECTORS)) return 0;
-  for (int32_t i = 0; i < system->n; i++) most = fmax(most, fabs(system->spectrum.value[i]));
+  if (!strut_path_spectrum(system, unknowns)) return 0;
+  double most = strut_path_largest_value(system);
   for (int32_t i = 0; i < system->n && count < MOST_SOFT; i++) {
     if (system->spectrum.value[i] < -NEUTRAL * most) return 0;
     if (system->spectrum.value[i] <= NEUTRAL * most && !count++) *first = i;
   }
-  bool stressed = count && project(system, (size_t)*first, (size_t)count, sum) > UNSTRESSED * most;
+  bool stressed = count && project(system, *first, count, sum) > UNSTRESSED * most;
   return stressed ? 0 : count;
 }
 
@@ -354,18 +337,17 @@ static bool find_unsymmetric(strut_path_system *system) {
   gsl_matrix_complex *vectors = gsl_matrix_complex_alloc(n, n);
   gsl_eigen_nonsymmv_workspace *eigen = gsl_eigen_nonsymmv_alloc(n);
   gsl_permutation *order = gsl_permutation_alloc(n);
+  gsl_matrix_view work = gsl_matrix_view_array(system->spectrum.work, n, n);
   bool found = values && vectors && eigen && order;
-  gsl_matrix_memcpy(system->algebra.work, system->algebra.hessian);
-  found = found && gsl_eigen_nonsymmv(system->algebra.work, values, vectors, eigen) == 0;
+  found = found && gsl_eigen_nonsymmv(&work.matrix, values, vectors, eigen) == 0;
   if (found) {
     const gsl_vector_view real = gsl_vector_complex_real(values);
     gsl_sort_vector_index(order, &real.vector);
     for (size_t k = 0; k < n; k++) {
       size_t from = gsl_permutation_get(order, k);
-      gsl_vector_complex_view column = gsl_matrix_complex_column(vectors, from);
-      const gsl_vector_view vector = gsl_vector_complex_real(&column.vector);
       system->spectrum.value[k] = gsl_vector_get(&real.vector, from);
-      gsl_matrix_set_col(system->algebra.vectors, k, &vector.vector);
+      for (size_t i = 0; i < n; i++)
+        strut_path_mode(system, (int32_t)k)[i] = GSL_REAL(gsl_matrix_complex_get(vectors, i, from));
     }
     double largest = fmax(fabs(system->spectrum.value[0]), fabs(system->spectrum.value[n - 1]));
     system->spectrum.noise = ROUNDING * largest;
@@ -390,35 +372,25 @@ static int32_t count_folded(const strut_path_system *system) {
   return count;
 }
 
-bool strut_path_spectrum(strut_path_system *system, const double *unknowns,
-                         strut_path_spectrum_detail wanted) {
-  size_t first;
+bool strut_path_spectrum(strut_path_system *system, const double *unknowns) {
+  int32_t n = system->n, first;
+  double *value = system->spectrum.value;
   if (!strut_path_evaluate(system, unknowns)) return false;
   system->spectrum.negative = system->spectrum.folded = count_folded(system);
-  if (system->n == 0) return true;
+  if (n == 0) return true;
+  memcpy(system->spectrum.work, system->algebra.hessian->data, (size_t)(n * n) * sizeof(double));
   if (!is_symmetric(system)) return find_unsymmetric(system);
-  if (wanted == STRUT_PATH_VECTORS) {
-    find_vectors(system);
-  } else {
-    gsl_matrix_memcpy(system->algebra.work, system->algebra.hessian);
-    gsl_eigen_symm(system->algebra.work, system->algebra.values, system->algebra.values_only);
-    gsl_sort_vector(system->algebra.values);
-  }
-  double largest =
-      fmax(fabs(system->spectrum.value[0]), fabs(system->spectrum.value[system->n - 1]));
-  double below = (wanted == STRUT_PATH_SIGNS ? UNSIGNED : SOFT) * largest;
-  size_t soft = find_soft(system, below, &first);
-  if (soft && wanted != STRUT_PATH_VECTORS) {
-    find_vectors(system);
-    soft = find_soft(system, below, &first);
-  }
+  if (!strut_eigen_ascending(system->spectrum.work, n, value, system->spectrum.vector))
+    return false;
+  double largest = fmax(fabs(value[0]), fabs(value[n - 1]));
+  int32_t soft = find_soft(system, SOFT * largest, &first);
   if (soft && !refine(system, first, soft)) return false;
   double parts = fmax(largest_across(system), soft ? system->spectrum.soft_parts : 0.0);
   double zero = fmax(ZERO_VALUE * parts, NO_VALUE * largest);
   system->spectrum.noise = ROUNDING * largest;
-  for (size_t i = 0; i < (size_t)system->n; i++) {
+  for (int32_t i = 0; i < n; i++) {
     bool is_soft = i >= first && i < first + soft;
-    if (system->spectrum.value[i] < (is_soft ? -zero : 0.0)) system->spectrum.negative++;
+    system->spectrum.negative += value[i] < (is_soft ? -zero : 0.0);
   }
   return true;
 }

@@ -25,7 +25,7 @@ double strut_path_measure_eigenvalue(strut_path_system *system, const double *un
                                      const strut_path_piece *piece, int32_t which) {
   assert(which >= 0 && which < system->n);
   (void)piece;
-  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_VALUES)) return (double)NAN;
+  if (!strut_path_spectrum(system, unknowns)) return (double)NAN;
   return system->spectrum.value[which];
 }
 
@@ -45,66 +45,9 @@ static bool point_at(strut_path_system *system, const strut_path_piece *piece, d
   return strut_path_correct(system, piece->tangent, value, unknowns) >= 0;
 }
 
-/* Points of the path where the measure is known, those nearest to zero first. */
-typedef struct trial {
-  double place, value, *y; /* y (2 n + 2) */
-} trial;
-
-typedef struct trials {
-  strut_path_measure measure;
-  int32_t which; /* eigenvalue that is followed */
-  int count;
-  trial kept[KEPT];
-} trials;
-
-static bool make_trials(const strut_path_system *system, strut_arena *arena, trials *self) {
-  for (int k = 0; k < KEPT; k++) {
-    if (!STRUT_ALLOCATE(arena, STRUT_NEW(self->kept[k].y, 2 * ((size_t)system->n + 1))))
-      return false;
-  }
-  return true;
-}
-
-static void keep_trial(const strut_path_system *system, trials *self, double place, double value,
-                       const double *unknowns) {
-  int at = self->count < KEPT ? self->count++ : KEPT;
-  if (at == KEPT && !(fabs(value) < fabs(self->kept[--at].value))) return;
-  double *block = self->kept[at].y;
-  for (; at > 0 && fabs(value) < fabs(self->kept[at - 1].value); at--)
-    self->kept[at] = self->kept[at - 1];
-  self->kept[at] = (trial){place, value, block};
-  memcpy(block, unknowns, 2 * ((size_t)system->n + 1) * sizeof *unknowns);
-}
-
-/*
- * Where the measure vanishes, by a polynomial in it through the trials kept; false: off the piece.
- */
-static bool interpolate(const strut_path_system *system, const trials *self, double length,
-                        double *place, double *unknowns) {
-  double weight[KEPT], sum = 0;
-  const trial *nearest = &self->kept[0];
-  for (int k = 0; k < self->count; k++) {
-    weight[k] = 1;
-    for (int l = 0; l < self->count; l++)
-      if (l != k) weight[k] *= self->kept[l].value / (self->kept[l].value - self->kept[k].value);
-    sum += weight[k] * self->kept[k].place;
-  }
-  if (!(sum >= -NARROW * length && sum <= (1 + NARROW) * length)) return false;
-  *place = fmax(0.0, fmin(length, sum));
-  for (int32_t i = 0, count = system->n + 1; i < count; i++) {
-    double change = 0;
-    for (int k = 1; k < self->count; k++)
-      change += weight[k] * ((self->kept[k].y[i] - nearest->y[i]) +
-                             (self->kept[k].y[count + i] - nearest->y[count + i]));
-    strut_dd at = dd_add((strut_dd){nearest->y[i], nearest->y[count + i]}, dd_of(change));
-    unknowns[i] = at.hi, unknowns[count + i] = at.lo;
-  }
-  return true;
-}
-
 /* Is another eigenvalue as near to zero? Then their order changes where they pass it: each is smooth on one side. */
 static bool is_one_of_several(strut_path_system *system, const double *unknowns, int32_t which) {
-  if (which < 0 || !strut_path_spectrum(system, unknowns, STRUT_PATH_VALUES)) return false;
+  if (which < 0 || !strut_path_spectrum(system, unknowns)) return false;
   double value = fabs(system->spectrum.value[which]);
   for (int32_t i = 0; i < system->n; i++)
     if (i != which && fabs(system->spectrum.value[i]) < ALIKE * value) return true;
@@ -113,27 +56,48 @@ static bool is_one_of_several(strut_path_system *system, const double *unknowns,
 
 /*
  * Where an eigenvalue vanishes near `place`. Newton's method would be led astray there, so that the
- * point is interpolated between four on its two sides, near enough for a cubic and far enough for
- * Newton's method. `slope` is the measure's derivative. False: they are not to be had.
+ * point is interpolated between four on its two sides, by a polynomial in the measure: near enough for a
+ * cubic and far enough for Newton's method. `slope` is the measure's derivative. False: they are not to be had.
  */
-static bool interpolate_fork(strut_path_system *system, const strut_path_piece *piece, double scale,
-                             double slope, trials *self, double *place, double *unknowns) {
+static bool interpolate_fork(strut_path_system *system, const strut_path_piece *piece,
+                             strut_path_measure measure, int32_t which, double scale, double slope,
+                             double *place, double *unknowns) {
   static const double sides[2][KEPT] = {{-2, -1, 1, 2}, {-1, -2, -3, -4}};
-  double noise = self->which < 0 ? 0.0 : BLURRED * system->spectrum.noise;
+  int32_t numbers = 2 * (system->n + 1), known = 0;
+  double noise = which < 0 ? 0.0 : BLURRED * system->spectrum.noise;
   double apart = fmin(fmax(fmax(FORK * scale, noise) / slope, APART), 0.1 * piece->length);
-  double middle = *place;
+  double middle = *place, at[KEPT], value[KEPT], sum = 0;
+  strut_arena arena = {0};
+  double *y = strut_arena_allocate(&arena, KEPT * (size_t)numbers, sizeof *y);
   int way = point_at(system, piece, middle - apart, (middle - apart) / piece->length, piece->from,
                      piece->to, unknowns) &&
-            is_one_of_several(system, unknowns, self->which);
-  self->count = 0;
-  for (int k = 0; k < KEPT; k++) {
-    double at = middle + sides[way][k] * apart;
-    if (!point_at(system, piece, at, at / piece->length, piece->from, piece->to, unknowns))
+            is_one_of_several(system, unknowns, which);
+  for (int k = 0; k < KEPT && y; k++) {
+    double *point = y + known * numbers;
+    at[known] = middle + sides[way][k] * apart;
+    if (!point_at(system, piece, at[known], at[known] / piece->length, piece->from, piece->to,
+                  point))
       continue;
-    double value = self->measure(system, unknowns, piece, self->which);
-    if (fabs(value) <= 2 * scale) keep_trial(system, self, at, value, unknowns);
+    value[known] = measure(system, point, piece, which);
+    known += fabs(value[known]) <= 2 * scale;
   }
-  return self->count > 1 && interpolate(system, self, piece->length, place, unknowns);
+  if (known > 1) memcpy(unknowns, y, (size_t)numbers * sizeof *y);
+  for (int k = 0; k < known && known > 1; k++) {
+    double weight = 1;
+    for (int l = 0; l < known; l++) weight *= l == k ? 1.0 : value[l] / (value[l] - value[k]);
+    sum += weight * at[k];
+    for (int32_t i = 0, count = numbers / 2; i < count; i++) {
+      double change =
+          weight * ((y[k * numbers + i] - y[i]) + (y[k * numbers + count + i] - y[count + i]));
+      strut_dd moved = dd_add((strut_dd){unknowns[i], unknowns[count + i]}, dd_of(change));
+      unknowns[i] = moved.hi, unknowns[count + i] = moved.lo;
+    }
+  }
+  strut_arena_free(&arena);
+  if (known < 2 || !(sum >= -NARROW * piece->length && sum <= (1 + NARROW) * piece->length))
+    return false;
+  *place = fmax(0.0, fmin(piece->length, sum));
+  return true;
 }
 
 double strut_path_locate(strut_path_system *system, const strut_path_piece *piece,
@@ -148,12 +112,9 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
   bool fork = measure == strut_path_measure_eigenvalue || which < 0;
   double near = (fork ? 10 * FORK : ZERO) * scale;
   strut_arena arena = {0};
-  trials t = {.measure = measure, .which = which};
-  double *end[2] = {strut_arena_allocate(&arena, 1, bytes), strut_arena_allocate(&arena, 1, bytes)};
-  if (end[0] && end[1] && make_trials(system, &arena, &t) && value[0] * value[1] <= 0 &&
-      scale > 0) {
-    memcpy(end[0], piece->from, bytes);
-    memcpy(end[1], piece->to, bytes);
+  double *end[2] = {strut_arena_copy(&arena, piece->from, 1, bytes),
+                    strut_arena_copy(&arena, piece->to, 1, bytes)};
+  if (end[0] && end[1] && value[0] * value[1] <= 0 && scale > 0) {
     for (int k = 0, last = -1; k < MOST_TRIALS; k++) {
       double share = value[0] / (value[0] - value[1]), before = value[0] - value[1];
       place = at[0] + share * (at[1] - at[0]);
@@ -173,10 +134,9 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
       if (side == last) value[1 - side] *= 0.5;
       last = side;
     }
-    double *rough = end[0];
-    memcpy(rough, unknowns, bytes);
-    if (fork && !interpolate_fork(system, piece, scale, slope, &t, &place, unknowns))
-      memcpy(unknowns, rough, bytes);
+    memcpy(end[0], unknowns, bytes);
+    if (fork && !interpolate_fork(system, piece, measure, which, scale, slope, &place, unknowns))
+      memcpy(unknowns, end[0], bytes);
   }
   strut_arena_free(&arena);
   return place;
@@ -191,6 +151,8 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
 /* Switches at one kink of which all combinations are tried. */
 enum { MOST_TOGETHER = 10 };
 
+static const double LOOSE = 1e-12,
+                    FIRM = 1e-10;   /* of the largest eigenvalue: none; certainly one */
 static const double AHEAD = 1e-6;   /* how far along a tangent it is seen what a switch will do */
 static const double STEADY = 1e-12; /* of what moves: a switch that changes less stays as it is */
 static const double LAST = 1e-15;   /* of the size: likewise, by rounding */
@@ -267,17 +229,21 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
   return true;
 }
 
-/* Does a stable path continue with the parameter? */
-static bool leads_on(strut_path_walk *walk) {
+/* Has a motion at walk->y no stiffness beside a share of the largest? */
+static bool is_loose(strut_path_walk *walk, double share) {
+  return !strut_path_spectrum(&walk->system, walk->y) || strut_path_is_loose(&walk->system, share);
+}
+
+/* Does a path that is stable by the latest spectrum continue with the parameter? */
+static bool leads_on(const strut_path_walk *walk) {
   int32_t n = walk->system.n;
-  return walk->tangent[n] * walk->next_tangent[n] > 0 &&
-         strut_path_spectrum(&walk->system, walk->y, STRUT_PATH_SIGNS) &&
-         walk->system.spectrum.negative == 0;
+  return walk->tangent[n] * walk->next_tangent[n] > 0 && walk->system.spectrum.negative == 0;
 }
 
 /*
  * Chooses the switches thrown here: those that the old stiffness throws, else any consistent set. Where the parameter
- * would turn back a stable path on which it does not goes first.
+ * would turn back, or a motion lose its stiffness, a stable path on which they do not goes first, but not twice in one
+ * place.
  */
 static bool choose_switches(strut_path_walk *walk, const switch_group *self, const double *beyond,
                             unsigned *thrown) {
@@ -290,10 +256,16 @@ static bool choose_switches(strut_path_walk *walk, const switch_group *self, con
   bool found = find_tangent(walk, self, first, beyond);
   bool turned = found && walk->tangent[n] * walk->next_tangent[n] < 0;
   *thrown = first;
-  if (found && !turned) return true;
-  for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
-    if (*thrown != first && find_tangent(walk, self, *thrown, beyond) && (!found || leads_on(walk)))
-      return true;
+  if (found && !turned && !is_loose(walk, LOOSE)) return true;
+  const strut_path *path = walk->path;
+  bool again = path->event_count && walk->arc == path->events[path->event_count - 1].at.arc;
+  int most = !again ? 2 : turned ? 1 : 0; /* 2: firm, and leads on; 1: leads on; 0: any */
+  int least = !found ? 0 : turned ? 1 : 2;
+  for (int wish = most; wish >= least; wish--)
+    for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
+      if (*thrown != first && find_tangent(walk, self, *thrown, beyond) &&
+          (!is_loose(walk, FIRM) || wish < 2) && (leads_on(walk) || wish < 1))
+        return true;
   *thrown = first;
   if (found) return find_tangent(walk, self, first, beyond);
   set_switches(walk, self, first);

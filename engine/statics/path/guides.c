@@ -31,29 +31,12 @@ static void find_in(const strut_path_system *system, const strut_path_terms *ter
 }
 
 /* How its forces on its nodes change with the parameter where these stay. */
-static void find_rate(strut_path_system *system, int32_t i, double *rate) {
-  const strut_path_parameter *parameter = &system->parameter;
-  const strut_element *element = &system->model->elements.element[i];
-  strut_path_terms *terms = &system->equations.terms;
+static void find_rate(const strut_path_system *system, int32_t i, double *rate) {
   strut_capstan_rest low, high;
-  double apart = parameter->apart, by = system->equations.rates.rest[element->base];
-  memset(rate, 0, 2 * (size_t)element->nodes * sizeof *rate);
-  if (parameter->options->over != STRUT_PATH_OVER_SCENE && by == 0.0) return;
-  if (parameter->options->over == STRUT_PATH_OVER_SCENE) {
-    find_in(system, &parameter->low, i, &low);
-    find_in(system, &parameter->high, i, &high);
-    by = 1.0;
-  } else {
-    double whole = terms->rest[element->base];
-    apart = 2.0 * STEP * system->size;
-    terms->rest[element->base] = whole - STEP * system->size;
-    find_in(system, terms, i, &low);
-    terms->rest[element->base] = whole + STEP * system->size;
-    find_in(system, terms, i, &high);
-    terms->rest[element->base] = whole;
-  }
-  for (int32_t k = 0; k < 2 * element->nodes; k++)
-    rate[k] = by * (high.force[k] - low.force[k]) / apart;
+  find_in(system, &system->parameter.low, i, &low);
+  find_in(system, &system->parameter.high, i, &high);
+  for (int32_t k = 0; k < 2 * system->model->elements.element[i].nodes; k++)
+    rate[k] = (high.force[k] - low.force[k]) / system->parameter.apart;
 }
 
 void strut_path_add_rubbing(strut_path_system *system, int32_t i) {

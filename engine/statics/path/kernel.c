@@ -13,14 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
 enum {
-  MOST_NULL = 6, /* dimension of a kernel that is searched */
+  MOST_NULL = STRUT_PATH_KERNEL,
   MOST_SPACE = MOST_NULL + 1,
   MOST_TERMS = 84 + 28, /* products of three and of two of seven numbers */
-  ITERATIONS = 12,
   ROOT_ITERATIONS = 40,
   STARTS = 300 /* for each dimension twice as many */
 };
@@ -28,7 +28,7 @@ enum {
 static const double RADII[] = {2e-3, 5e-4, 1e-4, 2e-5, 4e-6}; /* of spheres tried [units of y] */
 static const double ROUNDED = 3.0; /* roundings of the stiffness, over the size */
 static const double WITHIN = 2.0;  /* changes over a radius: an eigenvalue that vanishes inside */
-static const double CONVERGED = 1e-13, NEAR = 1e-8; /* of a step of Newton's method [units of y] */
+static const double FITTED = 3e-4; /* of its largest coefficient: what the polynomial may miss */
 static const double ROOT = 1e-11,
                     SMALL_STEP = 0.4; /* of the polynomial's zeros, on the unit sphere */
 static const double APART = 0.02;     /* of the radius: zeros that are not one */
@@ -38,71 +38,28 @@ typedef struct reduction {
   strut_path_walk *w;
   const double *centre; /* (2 n + 2) */
   int32_t null, space;  /* dimensions of the kernel; with the parameter */
-  double radius;
-  gsl_matrix *basis;  /* (n + 1, space), orthonormal: the kernel, then the rest of the plane */
-  gsl_matrix *system; /* (n + space, n + space) */
-  gsl_vector *right, *solution;
-  gsl_permutation *order;
-  double *y, *own[2]; /* (2 n + 2) scratch; the path that is walked, before and after */
+  double radius, stiff; /* stiff: the largest eigenvalue, times the size [N] */
+  double *basis;        /* (space, n + 1), orthonormal: the kernel, then the rest of the plane */
+  double *y, *own[2];   /* (2 n + 2) scratch; the path that is walked, before and after */
   strut_arena arena;
-  int terms; /* of the polynomial */
+  int terms;  /* of the polynomial */
+  bool rough; /* it misses b */
   double polynomial[MOST_NULL][MOST_TERMS];
 } reduction;
 
-/* F + N b = 0 on the plane basis' (y - centre) = z: the matrix [s K, slope, N; basis', 0] at y. */
-static bool fill_system(reduction *self, const double *y) {
-  strut_path_system *system = &self->w->system;
-  size_t n = (size_t)system->n, d = (size_t)self->space, m = (size_t)self->null;
-  if (!strut_path_evaluate(system, y)) return false;
-  gsl_matrix_set_zero(self->system);
-  for (size_t i = 0; i < n; i++) {
-    for (size_t j = 0; j < n; j++)
-      gsl_matrix_set(self->system, i, j,
-                     system->size * gsl_matrix_get(system->algebra.hessian, i, j));
-    gsl_matrix_set(self->system, i, n, system->latest.slope[i]);
-    for (size_t k = 0; k < m; k++)
-      gsl_matrix_set(self->system, i, n + 1 + k,
-                     self->w->stiff * gsl_matrix_get(self->basis, i, k));
-  }
-  for (size_t k = 0; k < d; k++)
-    for (size_t j = 0; j <= n; j++)
-      gsl_matrix_set(self->system, n + k, j, gsl_matrix_get(self->basis, j, k));
-  return true;
-}
-
-/* r->y becomes the solution over centre + radius z, and b (null) what equilibrium lacks there. */
+/* self->y becomes the solution over centre + radius z, and b (null) what equilibrium lacks there. */
 static bool reduce(reduction *self, const double *z, double *b) {
-  strut_path_system *system = &self->w->system;
-  size_t n = (size_t)system->n, count = n + 1, d = (size_t)self->space, m = (size_t)self->null;
-  double before = HUGE_VAL;
+  int32_t count = self->w->system.n + 1;
+  double place[MOST_SPACE];
   memcpy(self->y, self->centre, strut_path_bytes(self->w));
-  for (size_t j = 0; j < count; j++)
-    for (size_t k = 0; k < d; k++)
-      self->y[j] += self->radius * z[k] * gsl_matrix_get(self->basis, j, k);
-  for (int turn = 0; turn < ITERATIONS; turn++) {
-    double change = 0;
-    if (!fill_system(self, self->y)) return false;
-    for (size_t i = 0; i < n; i++) gsl_vector_set(self->right, i, -system->latest.g[i]);
-    for (size_t k = 0; k < d; k++) {
-      double left = self->radius * z[k];
-      for (size_t j = 0; j < count; j++)
-        left -= gsl_matrix_get(self->basis, j, k) *
-                ((self->y[j] - self->centre[j]) + (self->y[count + j] - self->centre[count + j]));
-      gsl_vector_set(self->right, n + k, left);
-    }
-    if (!strut_solve_rows(self->system, self->right, self->order, self->solution)) return false;
-    for (size_t j = 0; j < count; j++) {
-      double step = gsl_vector_get(self->solution, j);
-      change = fmax(change, fabs(step));
-      strut_dd sum = dd_add((strut_dd){self->y[j], self->y[count + j]}, dd_of(step));
-      self->y[j] = sum.hi, self->y[count + j] = sum.lo;
-    }
-    for (size_t k = 0; k < m; k++) b[k] = gsl_vector_get(self->solution, count + k);
-    if (!isfinite(change) || change > self->radius) return false;
-    if (change <= CONVERGED || (before <= NEAR && change > 0.3 * before)) return true;
-    before = change;
+  for (int32_t k = 0; k < self->space; k++) {
+    const double *row = self->basis + k * count;
+    place[k] = strut_dot(row, self->centre, count) + strut_dot(row, self->centre + count, count) +
+               self->radius * z[k];
+    for (int32_t j = 0; j < count; j++) self->y[j] += self->radius * z[k] * row[j];
   }
-  return false;
+  const strut_path_planes planes = {self->null, self->basis, place, self->stiff, self->radius, b};
+  return strut_path_correct_on(&self->w->system, &planes, self->y) >= 0;
 }
 
 /* Products of three and of two of the numbers z, and their derivatives; returns how many. */
@@ -164,6 +121,7 @@ static bool fit_polynomial(reduction *self) {
     double most = 0;
     made = gsl_linalg_QR_lssolve(matrix, tau, &column.vector, vector, left) == 0;
     for (size_t i = 0; i < columns; i++) most = fmax(most, fabs(gsl_vector_get(vector, i)));
+    self->rough = self->rough || gsl_blas_dnrm2(left) > FITTED * most;
     for (size_t i = 0; i < columns && made; i++)
       self->polynomial[k][i] = gsl_vector_get(vector, i) / (most > 0 ? most : 1.0);
   }
@@ -225,7 +183,7 @@ static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
   for (int32_t j = 0; j <= system->n; j++) {
     direction[j] = 0;
     for (int32_t k = 0; k < self->space; k++)
-      direction[j] += z[k] * gsl_matrix_get(self->basis, (size_t)j, (size_t)k);
+      direction[j] += z[k] * self->basis[k * (system->n + 1) + j];
     value += direction[j] * self->centre[j];
   }
   if (strut_path_correct(system, direction, value + self->radius, self->y) < 0) return false;
@@ -243,7 +201,7 @@ static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
   for (int32_t j = 0; j <= system->n; j++)
     ray->direction[j] = (self->y[j] - self->centre[j]) / length;
   ray->done = false, ray->own = 0;
-  if (!strut_path_spectrum(system, self->y, STRUT_PATH_SIGNS)) return false;
+  if (!strut_path_spectrum(system, self->y)) return false;
   ray->negative = system->spectrum.negative;
   rays->count++;
   return true;
@@ -291,82 +249,60 @@ static bool search_sphere(reduction *self, strut_path_rays *rays) {
   return all;
 }
 
-/* How many eigenvalues vanish at the centre, or at a point of the path not much more than a radius away. */
+/* How many eigenvalues vanish at the centre, or at a point of the path not much more than a radius away; their modes. */
 static int32_t count_kernel(reduction *self, int32_t *first) {
   strut_path_walk *walk = self->w;
   strut_path_system *system = &walk->system;
-  double *change = walk->scale, *here = walk->spare;
+  double *side[2] = {walk->scale, walk->spare}; /* eigenvalues before and after; NAN: not known */
   int32_t count = 0;
-  if (!strut_path_spectrum(system, self->centre, STRUT_PATH_VALUES)) return 0;
-  for (int32_t i = 0; i < system->n; i++) here[i] = system->spectrum.value[i], change[i] = 0;
-  for (int side = -1; side <= 1; side += 2) {
-    double value = side * self->radius;
+  for (int k = 0; k < 2; k++) {
+    double step = k ? self->radius : -self->radius;
+    double value = strut_path_dot(walk, walk->tangent, self->centre) + step;
     memcpy(self->y, self->centre, strut_path_bytes(walk));
-    for (int32_t j = 0; j <= system->n; j++) {
-      value += walk->tangent[j] * self->centre[j];
-      self->y[j] += side * self->radius * walk->tangent[j];
-    }
-    if (strut_path_correct(system, walk->tangent, value, self->y) < 0) continue;
-    self->own[side > 0] = strut_arena_copy(&self->arena, self->y, 1, strut_path_bytes(walk));
-    if (!strut_path_spectrum(system, self->y, STRUT_PATH_VALUES)) continue;
+    for (int32_t j = 0; j <= system->n; j++) self->y[j] += step * walk->tangent[j];
+    bool found = strut_path_correct(system, walk->tangent, value, self->y) >= 0;
+    if (found) self->own[k] = strut_arena_copy(&self->arena, self->y, 1, strut_path_bytes(walk));
+    found = found && strut_path_spectrum(system, self->y);
     for (int32_t i = 0; i < system->n; i++)
-      change[i] = fmax(change[i], fabs(system->spectrum.value[i] - here[i]));
+      side[k][i] = found ? system->spectrum.value[i] : (double)NAN;
   }
-  if (!strut_path_spectrum(system, self->centre, STRUT_PATH_VECTORS)) return 0;
-  walk->stiff = 0;
+  if (!strut_path_spectrum(system, self->centre)) return 0;
+  self->stiff = system->size * strut_path_largest_value(system);
   for (int32_t i = 0; i < system->n; i++) {
     double value = system->spectrum.value[i];
-    walk->stiff = fmax(walk->stiff, fabs(value));
-    if (fabs(value) > WITHIN * change[i]) continue;
-    if (!count++) *first = i;
+    double change = fmax(0.0, fmax(fabs(side[0][i] - value), fabs(side[1][i] - value)));
+    if (fabs(value) <= WITHIN * change && !count++) *first = i;
   }
-  walk->stiff *= system->size;
   return count < MOST_NULL ? count : MOST_NULL;
 }
 
-/* The kernel, and the direction in which parameter and structure change together. */
+/* The kernel from mode `first` on, and the direction in which parameter and structure change together. */
 static bool make_basis(reduction *self, int32_t first) {
   strut_path_system *system = &self->w->system;
-  size_t n = (size_t)system->n, m = (size_t)self->null;
-  gsl_matrix_set_zero(self->basis);
-  for (size_t k = 0; k < m; k++) {
-    gsl_vector_view own = gsl_matrix_subcolumn(self->basis, k, 0, n);
-    gsl_vector_const_view null =
-        gsl_matrix_const_column(system->algebra.vectors, (size_t)first + k);
-    gsl_vector_memcpy(&own.vector, &null.vector);
-    for (size_t l = 0; l < k; l++) { /* where the stiffness has no symmetry */
-      gsl_vector_const_view other = gsl_matrix_const_subcolumn(self->basis, l, 0, n);
-      double along;
-      gsl_blas_ddot(&own.vector, &other.vector, &along);
-      gsl_blas_daxpy(-along, &other.vector, &own.vector);
-    }
-    double length = gsl_blas_dnrm2(&own.vector);
-    if (!(length > 0)) return false;
-    gsl_vector_scale(&own.vector, 1.0 / length);
+  int32_t n = system->n, count = n + 1;
+  double bottom[MOST_SPACE] = {0};
+  self->space = self->null + 1;
+  self->basis = strut_arena_allocate(&self->arena, (size_t)(self->space * count), sizeof(double));
+  self->w->failed = self->w->failed || !self->basis;
+  if (self->w->failed) return false;
+  double *last = self->basis + self->null * count;
+  for (int32_t k = 0; k < self->null; k++) {
+    double *row = self->basis + k * count;
+    memcpy(row, strut_path_mode(system, first + k), (size_t)n * sizeof *row);
+    /* they have other directions where the stiffness has no symmetry */
+    double square = strut_remove_shares(self->basis, (size_t)k, (size_t)count, row);
+    for (int32_t j = 0; j < n; j++) row[j] /= sqrt(square);
+    if (!(square > 0)) return false;
   }
-  gsl_matrix_set(self->basis, n, m, 1.0);
-  if (!fill_system(self, self->centre)) return false;
-  gsl_vector_set_zero(self->right);
-  gsl_vector_set(self->right, n + m,
-                 1.0); /* the parameter changes by 1, nothing along the kernel */
-  if (!strut_solve_rows(self->system, self->right, self->order, self->solution)) return false;
-  gsl_vector_const_view change = gsl_vector_const_subvector(self->solution, 0, n + 1);
-  double length = gsl_blas_dnrm2(&change.vector);
-  for (size_t j = 0; j <= n; j++)
-    gsl_matrix_set(self->basis, j, m, gsl_vector_get(&change.vector, j) / length);
+  last[n] = bottom[self->null] = 1.0; /* the parameter changes by 1, nothing along the kernel */
+  const strut_path_planes planes = {.null = self->null, .row = self->basis, .stiff = self->stiff};
+  if (!strut_path_evaluate(system, self->centre) ||
+      !strut_path_solve(system, &planes, NULL, bottom, 0.0))
+    return false;
+  memcpy(last, system->algebra.solution->data, (size_t)count * sizeof *last);
+  double length = sqrt(strut_dot(last, last, count));
+  for (int32_t j = 0; j < count; j++) last[j] /= length;
   return true;
-}
-
-static bool allocate_reduction(reduction *self) {
-  size_t n = (size_t)self->w->system.n, d = (size_t)self->space;
-  self->basis = strut_arena_matrix(&self->arena, n + 1, d);
-  self->system = strut_arena_matrix(&self->arena, n + d, n + d);
-  self->right = strut_arena_vector(&self->arena, n + d);
-  self->solution = strut_arena_vector(&self->arena, n + d);
-  self->order = strut_arena_order(&self->arena, n + d);
-  if (!self->basis || !self->system || !self->right || !self->solution || !self->order)
-    self->w->failed = true;
-  return !self->w->failed;
 }
 
 /*
@@ -375,34 +311,28 @@ static bool allocate_reduction(reduction *self) {
  */
 bool strut_path_is_rounding(strut_path_walk *walk, const double *from, const double *to) {
   strut_path_system *system = &walk->system;
-  double b[MOST_NULL], z[MOST_SPACE] = {0}, lack = 0, *centre = walk->trial;
-  reduction r = {.w = walk, .centre = centre, .radius = RADII[0], .null = 1, .space = 2};
+  double b[MOST_NULL], z[MOST_SPACE] = {0}, *centre = walk->trial;
+  reduction r = {.w = walk, .centre = centre, .radius = RADII[0], .null = 1};
   int32_t first = 0;
   for (int32_t i = 0; i < 2 * (system->n + 1); i++) centre[i] = 0.5 * (from[i] + to[i]);
-  if (!strut_path_spectrum(system, centre, STRUT_PATH_VECTORS)) return false;
-  double level = system->spectrum.noise * system->size, stiff = 0;
-  for (int32_t i = 0; i < system->n; i++) {
-    double value = fabs(system->spectrum.value[i]);
-    stiff = fmax(stiff, value);
-    if (value < fabs(system->spectrum.value[first])) first = i;
-  }
-  walk->stiff = stiff * system->size;
+  if (!strut_path_spectrum(system, centre)) return false;
+  double level = system->spectrum.noise * system->size;
+  for (int32_t i = 1; i < system->n; i++)
+    if (fabs(system->spectrum.value[i]) < fabs(system->spectrum.value[first])) first = i;
+  r.stiff = system->size * strut_path_largest_value(system);
   r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(walk));
   walk->failed = walk->failed || !r.y;
-  bool found = !walk->failed && allocate_reduction(&r) && make_basis(&r, first) && reduce(&r, z, b);
-  if (found) lack = fabs(b[0]) * walk->stiff;
+  bool found = r.y && make_basis(&r, first) && reduce(&r, z, b);
   strut_arena_free(&r.arena);
-  return found && lack <= ROUNDED * level;
+  return found && fabs(b[0]) * r.stiff <= ROUNDED * level;
 }
 
 /* All rays of one radius; false: some could not be had. */
 static bool find_at_radius(reduction *self, strut_path_rays *rays) {
   int32_t first = 0;
-  self->null = count_kernel(self, &first);
-  self->space = self->null + 1;
-  rays->null = self->null;
-  return self->null && allocate_reduction(self) && make_basis(self, first) &&
-         fit_polynomial(self) && search_sphere(self, rays);
+  self->null = rays->null = count_kernel(self, &first);
+  return self->null && make_basis(self, first) && fit_polynomial(self) &&
+         search_sphere(self, rays) && !self->rough;
 }
 
 static int compare_rays(const void *first, const void *second) {

@@ -73,49 +73,37 @@ static void go_on_from_leap(strut_path_walk *walk, const double *here, const dou
 /* Would a leap lead back to where the path comes from, or did several not lead on? */
 static bool is_futile(const strut_path_walk *walk, const double *unknowns, double sense) {
   const strut_path_system *system = &walk->system;
-  double range = fabs(system->parameter.range), here = strut_path_value(system, unknowns);
+  const strut_path *path = walk->path;
+  double range = system->parameter.range, here = strut_path_value(system, unknowns), came = 0.0;
   int near = 0;
-  for (size_t k = 0; k < walk->path->event_count; k++) {
-    const strut_path_event *event = &walk->path->events[k];
-    near += event->kind == STRUT_PATH_MECHANISM && fabs(event->at.factor - here) < NOTABLE * range;
-  }
-  return near >= MOST_LEAPS || sense * (unknowns[system->n] - walk->last[system->n]) < 0.0;
+  for (size_t k = path->point_count; k-- > 0 && came == 0.0;)
+    came = (here - path->points[k].at.factor) / range;
+  for (size_t k = 0; k < path->event_count; k++)
+    near += path->events[k].kind == STRUT_PATH_MECHANISM &&
+            fabs(path->events[k].at.factor - here) < NOTABLE * fabs(range);
+  return near >= MOST_LEAPS || sense * came < 0.0;
 }
 
 bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, double sense) {
   strut_path_system *system = &walk->system;
-  int32_t first = 0, node, forces = strut_force_count(system->model, true);
-  if (!walk->settle || system->parameter.options->friction) return false;
-  if (is_futile(walk, unknowns, sense)) return false;
-  int32_t count = strut_path_find_mechanisms(system, unknowns, &first);
+  int32_t first = 0, count = 0, forces = strut_force_count(system->model, true);
+  if (walk->settle && !system->parameter.options->friction && !is_futile(walk, unknowns, sense))
+    count = strut_path_find_mechanisms(system, unknowns, &first);
   if (!count) return false;
-  gsl_vector_const_view vector = gsl_matrix_const_column(system->algebra.vectors, (size_t)first);
-  node = strut_path_most_moved(system, &vector.vector);
+  int32_t node = strut_path_most_moved(system, strut_path_mode(system, first));
   strut_arena arena = {0};
-  strut_path_frozen frozen = {0};
-  size_t bytes = strut_path_bytes(walk);
-  double *from = strut_arena_copy(&arena, unknowns, 1, bytes),
-         *here = strut_arena_copy(&arena, walk->y, 1, bytes),
-         *next = strut_arena_copy(&arena, walk->next, 1, bytes),
-         *tangent = strut_arena_copy(&arena, walk->tangent, 1, bytes / 2),
+  strut_path_frozen here;
+  double *from = strut_arena_copy(&arena, unknowns, 1, strut_path_bytes(walk)),
          *before = strut_arena_allocate(&arena, (size_t)forces + 1, sizeof *before);
-  bool found = false, lends = system->lends;
-  walk->failed = walk->failed || !from || !here || !next || !tangent || !before ||
-                 !strut_path_freeze(system, &arena, &frozen);
+  bool found = false;
+  walk->failed = walk->failed || !from || !before || !strut_path_freeze(walk, &arena, &here);
   for (int32_t i = 0; i < forces && !walk->failed; i++)
     before[i] = system->force[i].pose.acts ? system->force[i].pose.force : 0.0;
   for (size_t k = 0; k < sizeof LEAPS / sizeof *LEAPS && !found && !walk->failed; k++) {
     found = leap_to(walk, from, sense < 0 ? -LEAPS[k] : LEAPS[k], before);
-    if (!found) strut_path_thaw(system, &frozen);
+    if (!found) strut_path_thaw(walk, &here);
   }
-  if (found) {
-    go_on_from_leap(walk, here, from, node, count);
-  } else if (!walk->failed) {
-    system->lends = lends;
-    memcpy(walk->y, here, bytes);
-    memcpy(walk->next, next, bytes);
-    memcpy(walk->tangent, tangent, bytes / 2);
-  }
+  if (found) go_on_from_leap(walk, here.y, from, node, count);
   strut_arena_free(&arena);
   return found && !walk->failed;
 }

@@ -221,53 +221,49 @@ bool strut_path_parameter_terms(strut_path_parameter *parameter, strut_dd value,
   return true;
 }
 
-static void divide_difference(const double *low, const double *high, double apart, size_t count,
-                              double *rate) {
-  for (size_t i = 0; i < count; i++) rate[i] = (high[i] - low[i]) / apart;
+/* How far to both sides; forces are linear in loads, and steep in rest lengths near zero. */
+static double find_step(const strut_path_parameter *parameter, double value) {
+  const strut_path_options *options = parameter->options;
+  const strut_model *model = parameter->model;
+  double range = fabs(parameter->range), step = VALUE_STEP * range;
+  if (options->over == STRUT_PATH_OVER_LOAD) return range;
+  if (options->over != STRUT_PATH_OVER_ACTUATOR) return step;
+  double rest = parameter->base.rest[strut_actuator_slot(model, (size_t)options->index)];
+  bool length = model->scene->actuators[options->index].member >= 0;
+  double part = VALUE_STEP * (rest + value - parameter->from);
+  return length ? fmin(step, fmax(part, VALUE_STEP * step)) : step;
 }
 
-static bool difference_scenes(strut_path_parameter *parameter, double value,
-                              strut_path_terms *rates) {
-  size_t length = (size_t)parameter->model->length, slots = (size_t)parameter->model->members.slots;
-  double h = VALUE_STEP * fabs(parameter->range), low = value - h, high = value + h;
-  strut_path_terms *terms = &parameter->low, *b = &parameter->high;
+/* Terms to both sides of a value, or at the value itself where there are none to one side; false: there are none. */
+static bool find_neighbours(strut_path_parameter *parameter, double value) {
+  double h = find_step(parameter, value);
+  double low = value - h, high = value + h;
   double refused_at = parameter->refused_at; /* values beside it do not count */
   strut_error refusal = parameter->refusal;
-  if (!read_scene_terms(parameter, low, terms)) {
+  if (!strut_path_parameter_terms(parameter, dd_of(low), &parameter->low)) {
     low = value;
-    if (!read_scene_terms(parameter, low, terms)) return false;
+    if (!strut_path_parameter_terms(parameter, dd_of(low), &parameter->low)) return false;
   }
-  if (!read_scene_terms(parameter, high, b)) {
+  if (!strut_path_parameter_terms(parameter, dd_of(high), &parameter->high)) {
     high = value;
-    if (low == high || !read_scene_terms(parameter, high, b)) return false;
+    if (low == high || !strut_path_parameter_terms(parameter, dd_of(high), &parameter->high))
+      return false;
   }
   parameter->refused_at = refused_at, parameter->refusal = refusal;
-  double apart = parameter->apart = high - low;
-  divide_difference(terms->stiffness, b->stiffness, apart, slots, rates->stiffness);
-  divide_difference(terms->rest, b->rest, apart, slots, rates->rest);
-  divide_difference(terms->position, b->position, apart, length, rates->position);
-  divide_difference(terms->force, b->force, apart, length, rates->force);
+  parameter->apart = high - low;
   return true;
 }
 
-/* The rates of a built-in parameter never change; the other entries of `rates` stay zero. */
 bool strut_path_parameter_rates(strut_path_parameter *parameter, double value,
                                 strut_path_terms *rates) {
-  int32_t at = parameter->options->index;
-  switch (parameter->options->over) {
-    case STRUT_PATH_OVER_SCENE: return difference_scenes(parameter, value, rates);
-    case STRUT_PATH_OVER_LOAD:
-      memcpy(rates->force, parameter->load, (size_t)parameter->model->length * sizeof(double));
-      memcpy(rates->rest, parameter->load + parameter->model->length,
-             (size_t)parameter->model->members.slots * sizeof(double));
-      return true;
-    case STRUT_PATH_OVER_ACTUATOR:
-      rates->rest[strut_actuator_slot(parameter->model, (size_t)at)] = 1;
-      follow_slot(parameter->model, strut_actuator_slot(parameter->model, (size_t)at), rates->rest);
-      return true;
-    case STRUT_PATH_OVER_COORDINATE: rates->position[at] = 1; return true;
-  }
-  return false;
+  const strut_path_terms *low = &parameter->low, *high = &parameter->high;
+  size_t length = (size_t)parameter->model->length, slots = (size_t)parameter->model->members.slots;
+  if (!find_neighbours(parameter, value)) return false;
+  for (size_t i = 0; i < count_terms(parameter->model); i++)
+    rates->stiffness[i] = (high->stiffness[i] - low->stiffness[i]) / parameter->apart;
+  for (size_t i = 0; i < slots; i++) rates->rest[i] += rates->rest_low[i];
+  for (size_t i = 0; i < length; i++) rates->position[i] += rates->position_low[i];
+  return true;
 }
 
 /* Do the elements' laws have other numbers? */
@@ -342,8 +338,6 @@ strut_status strut_path_parameter_create(strut_path_parameter *parameter, const 
   return check_effect(parameter, error);
 }
 
-static const double STRAIN_STEP = 1e-5; /* of the strain: apart, for a derivative */
-
 /* A kink that matters: it lies where the element can act. */
 static bool is_kink_felt(const strut_element *element, double kink) {
   return !element->carries || element->carries * kink > 0.0;
@@ -400,24 +394,13 @@ static strut_law_response respond(const strut_path_terms *terms, int32_t i, doub
 /* How the force changes with the parameter where the strain does not. */
 static double find_rate(const strut_path_system *system, int32_t i) {
   const strut_path_parameter *parameter = &system->parameter;
-  const strut_path_element *own = &system->elements.element[i];
-  const strut_element *element = &system->model->elements.element[i];
-  const strut_element_pose *pose = &strut_path_element_force(system, i)->pose;
-  double strain = pose->strain, natural = pose->natural;
-  if (parameter->options->over == STRUT_PATH_OVER_SCENE) {
-    double low =
-        respond(&parameter->low, i, strain, natural_in(&parameter->low, i), own->piece).force;
-    double high =
-        respond(&parameter->high, i, strain, natural_in(&parameter->high, i), own->piece).force;
-    return (high - low) / parameter->apart;
+  double strain = strut_path_element_force(system, i)->pose.strain, force[2];
+  for (int k = 0; k < 2; k++) {
+    const strut_path_terms *terms = k ? &parameter->high : &parameter->low;
+    force[k] =
+        respond(terms, i, strain, natural_in(terms, i), system->elements.element[i].piece).force;
   }
-  double rate = element->slot >= 0 ? system->equations.rates.rest[element->slot] : 0.0;
-  if (rate == 0.0) return 0.0;
-  double h = STRAIN_STEP * fmax(fabs(natural), fabs(strain));
-  if (!(h > 0.0)) h = STRAIN_STEP;
-  double low = respond(&system->equations.terms, i, strain, natural - h, own->piece).force;
-  double high = respond(&system->equations.terms, i, strain, natural + h, own->piece).force;
-  return rate * (high - low) / (2.0 * h);
+  return (force[1] - force[0]) / parameter->apart;
 }
 
 /*

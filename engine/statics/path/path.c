@@ -281,7 +281,10 @@ static bool allocate_walk(strut_path_walk *walk) {
                      &walk->next, &walk->next_tangent, &walk->trial, &walk->spare, &walk->upward,
                      &walk->fork, &walk->values, &walk->earlier_values, &walk->scale, &walk->first,
                      &walk->first_tangent, &walk->last, &walk->last_tangent, &walk->part.from,
-                     &walk->part.tangent, &walk->part.to) ||
+                     &walk->part.tangent, &walk->part.to, &walk->beyond, &walk->check.whole.y,
+                     &walk->check.whole.tangent, &walk->check.whole.end, &walk->check.inner.y,
+                     &walk->check.inner.tangent, &walk->check.inner.end, &walk->check.y,
+                     &walk->check.tangent, &walk->check.next_tangent) ||
       !STRUT_NUMBERS(&walk->system.arena, walk->system.model->length, &walk->settled))
     return false;
   walk->upward[walk->system.n] = 1.0;

@@ -2,10 +2,11 @@
 /** What an equilibrium path is made of: its parameter, its equations, events on it, and the walk. */
 #pragma once
 
-#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_matrix.h>
 #include <gsl/gsl_permutation.h>
 
 #include "engine/base/arithmetic.h"
+#include "engine/base/vec.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"
 
@@ -26,13 +27,13 @@ typedef struct strut_path_terms {
 /** strut_path_parameter_create fills it; of the one in use the address must not change. */
 typedef struct strut_path_parameter {
   const strut_path_options *options;
-  const strut_model *model; /* at `from`: of all others the structure must be the same */
-  const double *load;       /* (length) loads at factor 1 [N], then (slots) moments [N m] */
-  double from, range;       /* [SI]; range is not 0 */
-  strut_path_terms base, low, high;
-  double apart;        /* of low and high as a derivative took them */
-  double refused_at;   /* the last value that was refused, and why */
-  strut_error refusal; /* STRUT_OK: none was */
+  const strut_model *model;         /* at `from`: of all others the structure must be the same */
+  const double *load;               /* (length) loads at factor 1 [N], then (slots) moments [N m] */
+  double from, range;               /* [SI]; range is not 0 */
+  strut_path_terms base, low, high; /* at `from`, and to both sides as the latest rates took them */
+  double apart;                     /* of these two */
+  double refused_at;                /* the last value that was refused, and why */
+  strut_error refusal;              /* STRUT_OK: none was */
 } strut_path_parameter;
 
 /** Terms of zeros in the arena; false: out of memory. */
@@ -200,17 +201,13 @@ typedef struct strut_path_system {
     int32_t most;       /* that supports have left anywhere on the path */
   } held;
   struct {
-    gsl_matrix *hessian, *work; /* (n, n) */
-    gsl_matrix *bordered;       /* (n + 1, n + 1) */
-    gsl_vector *right, *solution, *values;
-    gsl_matrix *vectors;
+    gsl_matrix *hessian, *bordered; /* (n, n), (n + 1, n + 1), with room for planes */
+    gsl_vector *right, *solution;   /* (n + 1), likewise */
     gsl_permutation *order;
-    gsl_eigen_symm_workspace *values_only;
-    gsl_eigen_symmv_workspace *eigen;
   } algebra;
   /** After strut_path_spectrum. */
   struct {
-    double *value;     /* (n) ascending, of algebra.values */
+    double *value, *vector, *work; /* (n) ascending; (n, n) the mode of value i in row i; scratch */
     int32_t negative;  /* eigenvalues below zero, and elements folded back, which have one each */
     int32_t folded;    /* these */
     double noise;      /* rounding of the stiffness's entries [N/m] */
@@ -254,23 +251,42 @@ bool strut_path_evaluate(strut_path_system *system, const double *unknowns);
 int strut_path_correct(strut_path_system *system, const double *row, double value,
                        double *unknowns);
 
+/** Dimension of a kernel that is searched, at most. */
+enum { STRUT_PATH_KERNEL = 6 };
+
+/** Planes row . y = value that a solution lies on, and forces b stiff along all but the last row that it may lack. */
+typedef struct strut_path_planes {
+  int32_t null;      /* such forces; planes are one more */
+  const double *row; /* (null + 1, n + 1) */
+  const double *value;
+  double stiff, far; /* [N]; a step longer than `far` leads nowhere */
+  double *lack;      /* (null) b */
+} strut_path_planes;
+
+/** The same on planes. */
+int strut_path_correct_on(strut_path_system *system, const strut_path_planes *planes,
+                          double *unknowns);
+/** Solves [K + by slope stiff row'; row 0] x = (top, bottom) into algebra.solution, top (n) or NULL; false: singular. */
+bool strut_path_solve(strut_path_system *system, const strut_path_planes *planes, const double *top,
+                      const double *bottom, double by);
+
 /** The unit tangent with row . tangent > 0; false if the system is singular. */
 bool strut_path_tangent(strut_path_system *system, const double *unknowns, const double *row,
                         double *tangent);
 
-/** Detail of the stiffness's spectrum: each level costs several times the previous one. */
-typedef enum strut_path_spectrum_detail {
-  STRUT_PATH_SIGNS,  /* of eigenvalues: how many are negative */
-  STRUT_PATH_VALUES, /* with all digits near zero too, not only to those of the largest */
-  STRUT_PATH_VECTORS /* and eigenvectors */
-} strut_path_spectrum_detail;
-
 /**
- * Eigenvalues of the stiffness, ascending, into system->values, vectors into system->vectors, the
- * number of negative ones into system->negative. False: no scene has this value.
+ * Eigenvalues of the stiffness with all digits near zero too, modes, and how many are negative, into
+ * system->spectrum. False: no scene has this value.
  */
-bool strut_path_spectrum(strut_path_system *system, const double *unknowns,
-                         strut_path_spectrum_detail wanted);
+bool strut_path_spectrum(strut_path_system *system, const double *unknowns);
+/** The mode (n) of an eigenvalue. */
+static inline double *strut_path_mode(const strut_path_system *system, int32_t i) {
+  return system->spectrum.vector + (size_t)i * (size_t)system->n;
+}
+/** The largest eigenvalue, absolute. */
+static inline double strut_path_largest_value(const strut_path_system *system) {
+  return strut_largest_magnitude(system->spectrum.value, system->n);
+}
 
 /** What may change along the path; switches are numbered in this order. */
 typedef enum strut_path_switch_kind {
@@ -349,17 +365,14 @@ typedef struct strut_path_rays {
   strut_path_ray *ray; /* (count) the most stable first */
 } strut_path_rays;
 
-/** What is taut, acts and touches at a point. */
+/** What a walk is at a point: what is taut, acts and touches, and where it goes. */
 typedef struct strut_path_frozen {
+  bool lends;
   uint8_t *pulling;            /* (members) */
   strut_path_contact *contact; /* (contacts) */
   strut_path_element *element; /* (elements) */
+  double *y, *next, *tangent;  /* (2 n + 2) */
 } strut_path_frozen;
-
-/** Copies it from the system into the arena, and back; false: out of memory. */
-bool strut_path_freeze(const strut_path_system *system, strut_arena *arena,
-                       strut_path_frozen *frozen);
-void strut_path_thaw(strut_path_system *system, const strut_path_frozen *frozen);
 
 /** A bifurcation that branches may leave: all that a walk needs to begin there. */
 typedef struct strut_path_fork {
@@ -370,16 +383,37 @@ typedef struct strut_path_fork {
   int32_t path, depth;
 } strut_path_fork;
 
+/** What changes at limit points and bifurcations: eigenvalues below zero, and the way of the parameter. */
+typedef struct strut_path_side {
+  int32_t negative;
+  int way; /* 0: along it nothing changes beyond rounding */
+} strut_path_side;
+
+/** A part of a step: its begin, and the place of its end along the tangent there. */
+typedef struct strut_path_part {
+  double *y, *tangent, *end; /* (2 n + 2) */
+  strut_path_side before;
+} strut_path_part;
+
+/** A step that is taken again in parts. */
+typedef struct strut_path_check {
+  strut_path_part whole, inner;
+  double *y, *tangent, *next_tangent; /* (2 n + 2) where it is */
+  bool blurred;                       /* an eigenvalue had no sign */
+} strut_path_check;
+
 typedef struct strut_path_walk {
   strut_path_system system;
   strut_path *path;
   double *y, *next;               /* (2 n + 2) the present point, and the next */
   double *tangent, *next_tangent; /* (n + 1) there */
   double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
-  double *fork, *values, *scale;  /* (2 n + 2) scratch; (n) eigenvalues at y, and scratch */
-  double *earlier_values;         /* (n) at the point before, if nothing jumped since */
-  double *first, *first_tangent;  /* (2 n + 2), (n + 1) where the path begins */
-  double *last, *last_tangent;    /* (2 n + 2), (n + 1) where the latest step began */
+  double *beyond;                 /* (2 n + 2) where a step would lead that a switch ends */
+  strut_path_check check;
+  double *fork, *values, *scale; /* (2 n + 2) scratch; (n) eigenvalues at y, and scratch */
+  double *earlier_values;        /* (n) at the point before, if nothing jumped since */
+  double *first, *first_tangent; /* (2 n + 2), (n + 1) where the path begins */
+  double *last, *last_tangent;   /* (2 n + 2), (n + 1) where the latest step began */
   double last_arc;
   double *settled; /* (length) scratch */
   /** Moves q (length) downhill to rest where the parameter has a value; false: it finds none. NULL: not to be had. */
@@ -391,7 +425,6 @@ typedef struct strut_path_walk {
     double *from, *tangent, *to;
     bool known;
   } part;
-  double stiff; /* the largest eigenvalue of a kernel's search, times the size */
   double arc, step;
   int32_t negative; /* eigenvalues below zero beyond y */
   int32_t bends;    /* kinks that stand for a smooth bend since the last point */
@@ -406,6 +439,10 @@ typedef struct strut_path_walk {
         lost; /* bifurcations or branches for which there was no room; that did not begin */
   } forks;
 } strut_path_walk;
+
+/** Copies what it is into the arena, and back; false: out of memory. */
+bool strut_path_freeze(const strut_path_walk *walk, strut_arena *arena, strut_path_frozen *frozen);
+void strut_path_thaw(strut_path_walk *walk, const strut_path_frozen *frozen);
 
 /** Of a point y. */
 static inline size_t strut_path_bytes(const strut_path_walk *walk) {
@@ -427,8 +464,8 @@ void strut_path_end_within(strut_path_walk *walk, const double *unknowns, strut_
 /* Motions without stiffness, beside rounding. */
 
 /**
- * Motions at y that meet no stiffness beyond rounding, in no member by itself: how many, the columns of
- * algebra.vectors from `first` on. 0 too where another motion is unstable.
+ * Motions at y that meet no stiffness beyond rounding, in no member by itself: how many, the modes
+ * from `first` on. 0 too where another motion is unstable.
  */
 int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unknowns,
                                    int32_t *first);
@@ -439,8 +476,8 @@ int32_t strut_path_find_mechanisms(strut_path_system *system, const double *unkn
 bool strut_path_leave_mechanism(strut_path_walk *walk, const double *unknowns, double sense);
 /** Remarks long parts of the path on which no member carries a force, or nothing changes. */
 void strut_path_remark_idle(const strut_path_walk *walk);
-/** The node that a vector over the free coordinates moves most. */
-int32_t strut_path_most_moved(const strut_path_system *system, const gsl_vector *vector);
+/** The node that a mode (n) moves most. */
+int32_t strut_path_most_moved(const strut_path_system *system, const double *mode);
 
 /**
  * The scene with the actuator at a value: rest length, angle or pressure of what it drives are those of
@@ -508,8 +545,10 @@ void strut_path_report_exchange(strut_path_walk *walk, double turn, int32_t befo
 /** Is this switch one of the many kinks that stand for the bend of a smooth law? */
 bool strut_path_is_bend(const strut_path_system *system, int32_t which);
 
-/** Keeps the latest eigenvalues as those of walk->y; the largest of them. */
-double strut_path_keep_values(strut_path_walk *walk);
+/** Keeps the latest eigenvalues as those of walk->y. */
+void strut_path_keep_values(strut_path_walk *walk);
+/** Has a motion of the latest spectrum no stiffness beside a share of the largest? Then a tangent is one of many. */
+bool strut_path_is_loose(const strut_path_system *system, double share);
 /** Eigenvalues below zero at walk->y, into walk->negative. */
 void strut_path_count_negative(strut_path_walk *walk);
 

@@ -65,45 +65,22 @@ static bool find_next(strut_path_walk *walk) {
   return false;
 }
 
-/* What changes at limit points and bifurcations: eigenvalues below zero, and the way of the parameter. */
-typedef struct side {
-  int32_t negative;
-  int way; /* 0: along it nothing changes beyond rounding */
-} side;
-
-static bool is_changed(side a, side b) { return a.negative != b.negative || a.way * b.way < 0; }
+static bool is_changed(strut_path_side a, strut_path_side b) {
+  return a.negative != b.negative || a.way * b.way < 0;
+}
 
 static int way_of(double rate) { return (rate > LEVEL) - (rate < -LEVEL); }
-
-/* A part of a step: its begin, and the place of its end along the tangent there. */
-typedef struct part {
-  double *y, *tangent, *end; /* (2 n + 2), (n + 1), (2 n + 2) */
-  side before;
-} part;
-
-typedef struct check {
-  part whole, inner;
-  double *y, *tangent, *next_tangent; /* where it is */
-  bool blurred;                       /* an eigenvalue had no sign */
-  strut_arena arena;
-} check;
-
-static bool allocate_check(const strut_path_walk *walk, check *self) {
-  return STRUT_NUMBERS(&self->arena, 2 * ((size_t)walk->system.n + 1), &self->whole.y,
-                       &self->whole.tangent, &self->whole.end, &self->inner.y, &self->inner.tangent,
-                       &self->inner.end, &self->y, &self->tangent, &self->next_tangent);
-}
 
 /*
  * Eigenvalues below zero where the path continues along a tangent. Elements are evaluated in double: the rounding
  * of their forces moves a soft mode, near zero by more than a short step.
  */
 static bool find_side(strut_path_walk *walk, const double *unknowns, const double *tangent,
-                      double step, side *found, bool *blurred) {
+                      double step, strut_path_side *found, bool *blurred) {
   strut_path_system *system = &walk->system;
-  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_SIGNS)) return false;
+  if (!strut_path_spectrum(system, unknowns)) return false;
   double level = fmax(BLURRED * system->spectrum.noise, ROUNDED / step * system->elements.noise);
-  *found = (side){system->spectrum.negative, way_of(tangent[system->n])};
+  *found = (strut_path_side){system->spectrum.negative, way_of(tangent[system->n])};
   for (int32_t i = 0; i < system->n; i++)
     if (fabs(system->spectrum.value[i]) < level) *blurred = true;
   return true;
@@ -113,20 +90,20 @@ static bool find_side(strut_path_walk *walk, const double *unknowns, const doubl
  * Takes a part again in shorter steps. False: they end elsewhere, or pass several changes, or one where the
  * part seemed to pass none. Else the part becomes the step on which the change is.
  */
-static bool narrow(strut_path_walk *walk, check *self, bool changes) {
+static bool narrow(strut_path_walk *walk, strut_path_check *self, bool changes) {
   strut_path_system *system = &walk->system;
   size_t bytes = strut_path_bytes(walk);
   const double *row = self->whole.tangent;
   double from = strut_path_dot(walk, row, self->whole.y);
   double length = strut_path_dot(walk, row, self->whole.end) - from, at = 0;
-  side now = self->whole.before;
+  strut_path_side now = self->whole.before;
   int found = 0;
   memcpy(self->y, self->whole.y, bytes);
   memcpy(self->tangent, self->whole.tangent, bytes);
   for (int k = 0; k < PARTS; at = share[k++]) {
     double step = (share[k] - at) * length / strut_path_dot(walk, row, self->tangent);
-    side next = now;
-    part *inner = found ? NULL : &self->inner;
+    strut_path_side next = now;
+    strut_path_part *inner = found ? NULL : &self->inner;
     if (inner) {
       memcpy(inner->y, self->y, bytes);
       memcpy(inner->tangent, self->tangent, bytes);
@@ -145,15 +122,15 @@ static bool narrow(strut_path_walk *walk, check *self, bool changes) {
   }
   if (strut_path_distance(walk, self->y, self->whole.end) > SAME * length) return false;
   if (found != changes) return false;
-  part narrowed = self->inner;
+  strut_path_part narrowed = self->inner;
   if (found) self->inner = self->whole, self->whole = narrowed;
   return true;
 }
 
 /* Does the step lead where shorter ones do, with what changes on it at one place? */
-static bool is_confirmed(strut_path_walk *walk, check *self, side after) {
+static bool is_confirmed(strut_path_walk *walk, strut_path_check *self, strut_path_side after) {
   size_t bytes = strut_path_bytes(walk);
-  side before = {walk->negative, way_of(walk->tangent[walk->system.n])};
+  strut_path_side before = {walk->negative, way_of(walk->tangent[walk->system.n])};
   bool changes = is_changed(before, after);
   int32_t crossed = after.negative - before.negative;
   double finest = crossed * crossed == 1 && before.way * after.way < 0 ? PLAIN : FINEST;
@@ -294,14 +271,13 @@ static double find_turn(strut_path_walk *walk) {
  */
 bool strut_path_find_next(strut_path_walk *walk) {
   strut_path_system *system = &walk->system;
-  check c = {0};
   walk->part.known = false;
   bool found = find_next(walk), done = !found || walk->negative < 0, cut = false;
   while (!done && walk->step > FINEST) {
-    side after = {0};
+    strut_path_side after = {0};
     bool blurred = false;
     if (!find_side(walk, walk->next, walk->next_tangent, walk->step, &after, &blurred)) break;
-    side before = {walk->negative, way_of(walk->tangent[system->n])};
+    strut_path_side before = {walk->negative, way_of(walk->tangent[system->n])};
     bool changed = is_changed(before, after), critical = is_critical(walk);
     double turn = changed || cut ? WHOLE_STEP : find_turn(walk);
     if (turn < WHOLE_STEP) {
@@ -310,8 +286,7 @@ bool strut_path_find_next(strut_path_walk *walk) {
       continue;
     }
     if (!changed && !critical) break;
-    walk->failed = walk->failed || (!c.whole.y && !allocate_check(walk, &c));
-    done = walk->failed || is_confirmed(walk, &c, after);
+    done = is_confirmed(walk, &walk->check, after) || walk->failed;
     if (done) break;
     walk->part.known = false;
     double whole = walk->step;
@@ -320,6 +295,5 @@ bool strut_path_find_next(strut_path_walk *walk) {
     walk->step = whole; /* no shorter step succeeds, or only a longer one over a kink: so be it */
     found = find_next(walk), done = true;
   }
-  strut_arena_free(&c.arena);
   return found && !walk->failed;
 }

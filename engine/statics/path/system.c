@@ -24,19 +24,15 @@ static const double FRESH = 1e-3; /* of the range: rates from so near by do for 
 
 static bool make_matrices(strut_path_system *system) {
   strut_arena *arena = &system->arena;
-  size_t unknowns = (size_t)system->n + 1; /* perhaps the parameter alone */
+  size_t unknowns = (size_t)system->n + 1 + STRUT_PATH_KERNEL;
   size_t n = system->n > 0 ? (size_t)system->n : 1;
-  system->algebra.eigen = gsl_eigen_symmv_alloc(n);
-  system->algebra.values_only = gsl_eigen_symm_alloc(n);
-  return (system->algebra.hessian = strut_arena_matrix(arena, n, n)) &&
-         (system->algebra.work = strut_arena_matrix(arena, n, n)) &&
-         (system->algebra.vectors = strut_arena_matrix(arena, n, n)) &&
-         (system->algebra.values = strut_arena_vector(arena, n)) &&
+  return STRUT_NUMBERS(arena, n, &system->spectrum.value) &&
+         STRUT_NUMBERS(arena, n * n, &system->spectrum.vector, &system->spectrum.work) &&
+         (system->algebra.hessian = strut_arena_matrix(arena, n, n)) &&
          (system->algebra.bordered = strut_arena_matrix(arena, unknowns, unknowns)) &&
          (system->algebra.right = strut_arena_vector(arena, unknowns)) &&
          (system->algebra.solution = strut_arena_vector(arena, unknowns)) &&
-         (system->algebra.order = strut_arena_order(arena, unknowns)) && system->algebra.eigen &&
-         system->algebra.values_only;
+         (system->algebra.order = strut_arena_order(arena, unknowns));
 }
 
 /* False: out of memory. */
@@ -78,9 +74,7 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
   if (status) return status;
   system->n = system->potential->n;
   if (system->n > STRUT_PATH_COORDINATES) return STRUT_OK;
-  if (!make_matrices(system)) return strut_no_memory(error, "");
-  system->spectrum.value = system->algebra.values->data;
-  return STRUT_OK;
+  return make_matrices(system) ? STRUT_OK : strut_no_memory(error, "");
 }
 
 /* Releases what its terms hold outside of the arena; zero-initialised ones may be freed. */
@@ -91,8 +85,6 @@ static void free_parameter(strut_path_parameter *parameter) {
 }
 
 void strut_path_system_free(strut_path_system *system) {
-  gsl_eigen_symmv_free(system->algebra.eigen);
-  gsl_eigen_symm_free(system->algebra.values_only);
   free_parameter(&system->parameter);
   strut_path_terms_release(&system->equations.terms);
   strut_arena_free(&system->arena);
@@ -292,22 +284,30 @@ bool strut_path_evaluate(strut_path_system *system, const double *unknowns) {
   return evaluate(system, unknowns, true);
 }
 
-/* Solves [K + by slope; row] x = (top, bottom); false: singular. */
-static bool solve_with(strut_path_system *system, const double *row, const double *top,
-                       double bottom, double by) {
-  size_t n = (size_t)system->n;
-  gsl_matrix *matrix = system->algebra.bordered;
-  for (size_t i = 0; i <= n; i++) {
+bool strut_path_solve(strut_path_system *system, const strut_path_planes *planes, const double *top,
+                      const double *bottom, double by) {
+  size_t n = (size_t)system->n, m = (size_t)planes->null, all = n + 1 + m;
+  gsl_matrix_view view = gsl_matrix_submatrix(system->algebra.bordered, 0, 0, all, all);
+  gsl_vector_view right = gsl_vector_subvector(system->algebra.right, 0, all),
+                  solution = gsl_vector_subvector(system->algebra.solution, 0, all);
+  gsl_permutation order = {all, system->algebra.order->data};
+  gsl_matrix *matrix = &view.matrix;
+  gsl_matrix_set_zero(matrix);
+  for (size_t i = 0; i < n; i++) {
     for (size_t j = 0; j < n; j++)
       gsl_matrix_set(
           matrix, i, j,
-          i == n ? row[j]
-                 : system->size * (gsl_matrix_get(system->algebra.hessian, i, j) + (i == j) * by));
-    gsl_matrix_set(matrix, i, n, i == n ? row[n] : system->latest.slope[i]);
-    gsl_vector_set(system->algebra.right, i, i == n ? bottom : top ? top[i] : 0.0);
+          system->size * (gsl_matrix_get(system->algebra.hessian, i, j) + (i == j) * by));
+    gsl_matrix_set(matrix, i, n, system->latest.slope[i]);
+    for (size_t k = 0; k < m; k++)
+      gsl_matrix_set(matrix, i, n + 1 + k, planes->stiff * planes->row[k * (n + 1) + i]);
+    gsl_vector_set(&right.vector, i, top ? top[i] : 0.0);
   }
-  return strut_solve_rows(matrix, system->algebra.right, system->algebra.order,
-                          system->algebra.solution);
+  for (size_t k = 0; k <= m; k++) {
+    for (size_t j = 0; j <= n; j++) gsl_matrix_set(matrix, n + k, j, planes->row[k * (n + 1) + j]);
+    gsl_vector_set(&right.vector, n + k, bottom[k]);
+  }
+  return strut_solve_rows(matrix, &right.vector, &order, &solution.vector);
 }
 
 /* Do [K slope] x and `top` agree? */
@@ -328,48 +328,61 @@ static bool is_solution(strut_path_system *system, const double *top) {
 }
 
 /*
- * Solves [K slope; row] x = (top, bottom). A mechanism without stiffness that no force works on stays where it
- * is as long as the path has had one from its begin, as in a beam that lies straight; false: singular otherwise.
+ * The same. A mechanism without stiffness that no force works on stays where it is as long as the path has had one
+ * from its begin, as in a beam that lies straight.
  */
-static bool solve(strut_path_system *system, const double *row, const double *top, double bottom) {
+static bool solve(strut_path_system *system, const strut_path_planes *planes, const double *top,
+                  const double *bottom) {
   double low, high;
-  bool plain = solve_with(system, row, top, bottom, 0.0);
-  if (!system->lends || system->n == 0) return plain;
-  double far = plain ? gsl_blas_dnrm2(system->algebra.solution) : HUGE_VAL;
+  gsl_vector_view own = gsl_vector_subvector(system->algebra.solution, 0, (size_t)system->n + 1);
+  bool plain = strut_path_solve(system, planes, top, bottom, 0.0);
+  if (!system->lends || system->n == 0 || planes->null) return plain;
+  double far = plain ? gsl_blas_dnrm2(&own.vector) : HUGE_VAL;
   gsl_matrix_minmax(system->algebra.hessian, &low, &high);
   double stiff = fmax(-low, high);
-  bool lent = solve_with(system, row, top, bottom, stiff > 0.0 ? TOUCHED * stiff : 1.0) &&
+  bool lent = strut_path_solve(system, planes, top, bottom, stiff > 0.0 ? TOUCHED * stiff : 1.0) &&
               is_solution(system, top);
-  if (!plain || (lent && far > ROUNDED * gsl_blas_dnrm2(system->algebra.solution))) return lent;
-  return solve_with(system, row, top, bottom, 0.0);
+  if (!plain || (lent && far > ROUNDED * gsl_blas_dnrm2(&own.vector))) return lent;
+  return strut_path_solve(system, planes, top, bottom, 0.0);
 }
 
 int strut_path_correct(strut_path_system *system, const double *row, double value,
                        double *unknowns) {
-  double before = HUGE_VAL;
+  const strut_path_planes plane = {.row = row, .value = &value, .far = FAR};
+  return strut_path_correct_on(system, &plane, unknowns);
+}
+
+int strut_path_correct_on(strut_path_system *system, const strut_path_planes *planes,
+                          double *unknowns) {
+  double before = HUGE_VAL, bottom[STRUT_PATH_KERNEL + 1];
   int32_t count = system->n + 1;
   int used = 0;
   for (int k = 1; k <= MOST_ITERATIONS; k++) {
-    double bottom = value, change = 0, left = 0;
+    double change = 0, left = 0;
     if (!evaluate(system, unknowns, false)) return -1;
-    for (int32_t i = 0; i < count; i++) bottom -= row[i] * unknowns[i];
-    for (int32_t i = 0; i < count; i++) bottom -= row[i] * unknowns[count + i];
+    for (int32_t l = 0; l <= planes->null; l++) {
+      const double *row = planes->row + l * count;
+      bottom[l] = planes->value[l];
+      for (int32_t i = 0; i < 2 * count; i++) bottom[l] -= row[i % count] * unknowns[i];
+    }
     for (int32_t i = 0; i < system->n; i++) {
       left = fmax(left, fabs(system->latest.g[i]));
       system->latest.g[i] = -system->latest.g[i];
     }
-    if (!solve(system, row, system->latest.g, bottom)) return -1;
+    if (!solve(system, planes, system->latest.g, bottom)) return -1;
+    const double *step = system->algebra.solution->data;
     for (int32_t i = 0; i < count; i++) {
-      double step = gsl_vector_get(system->algebra.solution, (size_t)i);
-      change = fmax(change, fabs(step));
-      strut_dd sum = dd_add((strut_dd){unknowns[i], unknowns[count + i]}, dd_of(step));
+      change = fmax(change, fabs(step[i]));
+      strut_dd sum = dd_add((strut_dd){unknowns[i], unknowns[count + i]}, dd_of(step[i]));
       unknowns[i] = sum.hi, unknowns[count + i] = sum.lo;
     }
+    for (int32_t l = 0; l < planes->null; l++) planes->lack[l] = step[count + l];
+    bool balanced = planes->null || left <= BALANCED * system->latest.forces;
     if (!used && change <= CONVERGED) used = k;
-    if ((change <= CONVERGED && left <= BALANCED * system->latest.forces) ||
+    if ((change <= CONVERGED && balanced) ||
         (before <= NEAR && change <= NEAR && change > 0.3 * before))
       return used ? used : k;
-    if (!isfinite(change) || change > FAR || (k > 2 && change > 4 * before)) return -1;
+    if (!isfinite(change) || change > planes->far || (k > 2 && change > 4 * before)) return -1;
     before = change;
   }
   return before <= NEAR ? MOST_ITERATIONS : -1;
@@ -377,8 +390,10 @@ int strut_path_correct(strut_path_system *system, const double *row, double valu
 
 bool strut_path_tangent(strut_path_system *system, const double *unknowns, const double *row,
                         double *tangent) {
+  const double bottom = 1.0;
+  const strut_path_planes plane = {.row = row};
   double sum = 0;
-  if (!evaluate(system, unknowns, true) || !solve(system, row, NULL, 1.0)) return false;
+  if (!evaluate(system, unknowns, true) || !solve(system, &plane, NULL, &bottom)) return false;
   for (int32_t i = 0; i <= system->n; i++) {
     tangent[i] = gsl_vector_get(system->algebra.solution, (size_t)i);
     sum += tangent[i] * tangent[i];

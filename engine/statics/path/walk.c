@@ -142,10 +142,10 @@ static const double LONGEST_HELD = 0.02;     /* where the curve is a reaction */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
 /* Relative to the size: a cable whose length equals its rest length along the path, up to rounding. */
 static const double HANGING = 1e-15;
-static const double CLOSE = 1e-6;    /* of the range: a value refused so near ends the path */
-static const double NEARBY = 1e-6;   /* largest correction of the start */
-static const double LOCATED = 1e-12; /* of the largest eigenvalue: rounding where an event is */
-static const double ALONG = 0.9;     /* cosine of tangents of one way through a point */
+static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
+static const double NEARBY = 1e-6; /* largest correction of the start */
+static const double SAME = 1e-5;   /* [units of y] an event so near an end is that end */
+static const double ALONG = 0.9;   /* cosine of tangents of one way through a point */
 
 double strut_path_dot(const strut_path_walk *walk, const double *first, const double *second) {
   double sum = 0;
@@ -190,21 +190,24 @@ static double first_switch(strut_path_walk *walk, const strut_path_piece *piece,
 }
 
 void strut_path_count_negative(strut_path_walk *walk) {
-  strut_path_spectrum(&walk->system, walk->y,
-                      STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
+  strut_path_spectrum(&walk->system, walk->y); /* y is of the path: its value was not refused */
   walk->negative = walk->system.spectrum.negative;
   walk->earlier = 0.0;
-  double most = strut_path_keep_values(walk);
-  int32_t first, rounded = 0;
-  for (int32_t i = 0; i < walk->system.n; i++)
-    rounded += walk->values[i] < 0.0 && walk->values[i] > -LOCATED * most;
-  if (rounded && strut_path_find_mechanisms(&walk->system, walk->y, &first)) walk->negative = 0;
+  strut_path_keep_values(walk);
 }
 
-/* How far the next point is along the tangent. */
-static double length_ahead(const strut_path_walk *walk) {
-  return strut_path_dot(walk, walk->tangent, walk->next) -
-         strut_path_dot(walk, walk->tangent, walk->y);
+/* From the present point. */
+static strut_path_piece piece_to(const strut_path_walk *walk, const double *to) {
+  const double *row = walk->tangent;
+  return (strut_path_piece){walk->y, row, to,
+                            strut_path_dot(walk, row, to) - strut_path_dot(walk, row, walk->y)};
+}
+
+/* The piece ends in w->trial. */
+static void cut_piece(strut_path_walk *walk) {
+  memcpy(walk->next, walk->trial, strut_path_bytes(walk));
+  if (!strut_path_tangent(&walk->system, walk->next, walk->tangent, walk->next_tangent))
+    memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
 }
 
 /* How far the parameter is from where the path ends [ranges]. */
@@ -219,29 +222,25 @@ static double measure_end(strut_path_system *system, const double *unknowns,
  * too. To a hair below the limit the stiffness is singular but for rounding, and the search along the path finds it.
  */
 static bool land_on_end(strut_path_walk *walk) {
-  strut_path_system *system = &walk->system;
-  strut_path_piece piece = {walk->y, walk->tangent, walk->next, length_ahead(walk)};
-  double from = walk->y[system->n];
-  if (!(from < 1)) return false;
-  if (walk->next[system->n] < 1) {
-    if (!strut_path_turns_back(walk) || walk->tangent[system->n] < 0 || !(piece.length > 0) ||
-        strut_path_locate(system, &piece, strut_path_measure_turn, 0, walk->fork) < 0 ||
-        system->strayed || !(measure_end(system, walk->fork, &piece, 0) >= 0))
+  int32_t n = walk->system.n;
+  strut_path_piece piece = piece_to(walk, walk->next);
+  if (!(walk->y[n] < 1)) return false;
+  if (walk->next[n] < 1) {
+    if (!strut_path_turns_back(walk) || walk->tangent[n] < 0 || !(piece.length > 0) ||
+        strut_path_locate(&walk->system, &piece, strut_path_measure_turn, 0, walk->fork) < 0 ||
+        walk->system.strayed || !(measure_end(&walk->system, walk->fork, &piece, 0) >= 0))
       return false;
-    piece.to = walk->fork;
-    piece.length = strut_path_dot(walk, walk->tangent, walk->fork) -
-                   strut_path_dot(walk, walk->tangent, walk->y);
-    if (!(piece.length > 0)) return false;
+    piece = piece_to(walk, walk->fork);
   }
-  double share = (1 - from) / (piece.to[system->n] - from);
-  for (int32_t i = 0; i < 2 * (system->n + 1); i++)
+  double share = (1 - walk->y[n]) / (piece.to[n] - walk->y[n]);
+  for (int32_t i = 0; i < 2 * (n + 1); i++)
     walk->trial[i] = walk->y[i] + share * (piece.to[i] - walk->y[i]);
-  bool corrected =
-      piece.to != walk->fork && strut_path_correct(system, walk->upward, 1.0, walk->trial) >= 0;
-  if (!corrected &&
-      (!(piece.length > 0) || strut_path_locate(system, &piece, measure_end, 0, walk->trial) < 0))
+  if ((piece.to == walk->fork ||
+       strut_path_correct(&walk->system, walk->upward, 1.0, walk->trial) < 0) &&
+      (!(piece.length > 0) ||
+       strut_path_locate(&walk->system, &piece, measure_end, 0, walk->trial) < 0))
     return false;
-  walk->trial[system->n] = 1.0, walk->trial[2 * system->n + 1] = 0.0;
+  walk->trial[n] = 1.0, walk->trial[2 * n + 1] = 0.0;
   memcpy(walk->next, walk->trial, strut_path_bytes(walk));
   return true;
 }
@@ -263,9 +262,7 @@ static bool land_on_stop(strut_path_walk *walk, const strut_path_piece *piece) {
          to = measure_stop(system, piece->to, piece, 0);
   if (!(from * to <= 0.0) || from == 0.0) return false;
   if (strut_path_locate(system, piece, measure_stop, 0, walk->trial) < 0) return false;
-  memcpy(walk->next, walk->trial, strut_path_bytes(walk));
-  if (!strut_path_tangent(system, walk->next, walk->tangent, walk->next_tangent))
-    memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
+  cut_piece(walk);
   return true;
 }
 
@@ -380,19 +377,10 @@ static bool leaves_at_turn(strut_path_walk *walk, const strut_path_piece *piece)
          strut_path_leave_mechanism(walk, walk->fork, walk->tangent[walk->system.n]);
 }
 
-/* Ends the piece where a switch is thrown and continues from there. */
-static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_t which,
-                          double *beyond) {
-  memcpy(beyond, walk->next, strut_path_bytes(walk));
-  memcpy(walk->next, walk->trial, strut_path_bytes(walk));
-  if (!strut_path_tangent(&walk->system, walk->next, walk->tangent, walk->next_tangent))
-    memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
-  strut_path_ray way;
-  if (leaves_at_turn(walk, piece)) return true;
-  if (strut_path_find_criticals(walk, piece, &way)) return go_on_along(walk, &way);
-  advance(walk);
+/* Throws a switch where the piece has ended, and continues from there. */
+static bool leave_switch(strut_path_walk *walk, int32_t which) {
   int32_t negative = walk->negative;
-  bool on = pass_switch(walk, which, beyond);
+  bool on = pass_switch(walk, which, walk->beyond);
   double since = walk->arc - walk->path->points[walk->path->point_count - 1].at.arc;
   if (!on && strut_path_turns_round(&walk->system, which)) return end_path(walk, STRUT_PATH_LOST);
   bool bends = on && negative == walk->negative && strut_path_is_bend(&walk->system, which);
@@ -405,7 +393,8 @@ static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_
 
 /* A step, or a part of it up to a kink. */
 static bool take_step(strut_path_walk *walk) {
-  strut_path_piece piece = {walk->y, walk->tangent, walk->next, 0};
+  strut_path_piece piece;
+  strut_path_ray way;
   int32_t which;
   bool landed, stopped, strayed;
   double place;
@@ -413,26 +402,24 @@ static bool take_step(strut_path_walk *walk) {
     if (!strut_path_find_next(walk))
       return strut_path_leave_mechanism(walk, walk->y, walk->tangent[walk->system.n]) ||
              end_path(walk, find_reason(walk));
-    piece.length = length_ahead(walk);
+    piece = piece_to(walk, walk->next);
     landed = land_on_end(walk), stopped = land_on_stop(walk, &piece);
-    if (landed || stopped) piece.length = length_ahead(walk);
+    piece = piece_to(walk, walk->next);
     place = first_switch(walk, &piece, &which, &strayed);
     strayed = strayed && walk->step > SHORTEST_CHECKED;
     if (strayed) walk->step *= 0.25;
   } while (strayed && !walk->failed);
   if (which >= 0) {
     piece.length = place;
-    double *beyond = strut_allocate(1, strut_path_bytes(walk));
-    walk->failed = walk->failed || !beyond;
-    bool on = beyond && end_at_switch(walk, &piece, which, beyond);
-    strut_release(beyond);
-    return on && !walk->failed;
+    memcpy(walk->beyond, walk->next, strut_path_bytes(walk));
+    cut_piece(walk);
+  } else {
+    walk->bends = 0;
   }
-  walk->bends = 0;
-  strut_path_ray way;
   if (leaves_at_turn(walk, &piece)) return !walk->failed;
   if (strut_path_find_criticals(walk, &piece, &way)) return go_on_along(walk, &way);
   advance(walk);
+  if (which >= 0) return leave_switch(walk, which) && !walk->failed;
   strut_path_add_point(walk, walk->negative);
   if (walk->failed) return false;
   if (landed || stopped) {
@@ -450,7 +437,7 @@ void strut_path_end_within(strut_path_walk *walk, const double *unknowns, strut_
   walk->arc = walk->last_arc + strut_path_distance(walk, walk->last, unknowns);
   while (path->point_count > 1 && path->points[path->point_count - 1].at.arc > walk->last_arc)
     path->point_count--;
-  while (path->event_count > 0 && path->events[path->event_count - 1].at.arc > walk->arc)
+  while (path->event_count > 0 && path->events[path->event_count - 1].at.arc > walk->arc - SAME)
     path->event_count--;
   memcpy(walk->y, unknowns, strut_path_bytes(walk));
   strut_path_add_point(walk, path->points[path->point_count - 1].negative);
