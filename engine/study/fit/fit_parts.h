@@ -30,7 +30,6 @@ typedef enum strut_fit_aligns {
 typedef struct strut_fit_unknown {
   const char *name, *unit;               /* "film.shift_x" */
   const strut_search_variable *variable; /* NULL: a number of an alignment, as follows */
-  size_t match;
   strut_fit_aligns what;
   double starts[2], scale; /* SI; the second of a start in four */
 } strut_fit_unknown;
@@ -39,15 +38,16 @@ typedef struct strut_fit_unknown {
 typedef struct strut_fit_source {
   int axis;        /* 0: x of a place, 1: y, -1: neither */
   int32_t partner; /* the series of the other coordinate of the same place, or -1 */
-  size_t column;   /* of a TABLE: its number among those of numbers */
+  int64_t column;  /* of a TABLE: its number among those of numbers */
 } strut_fit_source;
 
 /** What is known of a match. */
 typedef struct strut_fit_part {
-  strut_fit_source *sources; /* (series) */
-  strut_study study;         /* as given, with the match's `compute` */
-  strut_sweep_plan table;    /* of a TABLE */
-  double noise;              /* by which residuals are divided */
+  strut_fit_source *sources;               /* (series) */
+  strut_study study;                       /* as given, with the match's `compute` */
+  strut_sweep_plan table;                  /* of a TABLE */
+  double noise;                            /* by which residuals are divided */
+  int32_t aligned[STRUT_FIT_ALIGNS_COUNT]; /* parameters of the problem; -1: none */
 } strut_fit_part;
 
 /** What all evaluations have in common. Constant once made, but for its cache. */
@@ -58,7 +58,7 @@ typedef struct strut_fit_layout {
   size_t aligned_count, parameters;
   strut_fit_unknown *unknowns; /* (parameters) */
   strut_fit_part *parts;       /* (matches) */
-  double *measured;            /* (count) */
+  strut_fit_number *numbers;   /* (count) */
   bool noise_known;
   double *low, *high; /* (parameters) the box */
   strut_equilibrium_cache *standing;

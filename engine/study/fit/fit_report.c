@@ -55,14 +55,15 @@ static const double WHOLE = 0.02;
 /* ---- residuals ---- */
 
 /* Correlation of successive residuals of a series, in its standard errors; NAN: too few. */
-static double find_lag(const double *residual, size_t count) {
+static double find_lag(const strut_fit_number *number, size_t count) {
   double sum = 0.0, square = 0.0, last = 0.0;
   size_t used = 0;
   for (size_t i = 0; i < count; i++) {
-    if (residual[i] == 0.0) continue; /* a gap */
-    sum += last * residual[i];
-    square += residual[i] * residual[i];
-    last = residual[i];
+    double residual = number[i].residual;
+    if (residual == 0.0) continue; /* a gap */
+    sum += last * residual;
+    square += residual * residual;
+    last = residual;
     used++;
   }
   return used > 10 ? sum / square * sqrt((double)used) : (double)NAN;
@@ -74,12 +75,12 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   double square = 0.0, lags = 0.0, series = 0.0;
   *of = (strut_fit_residuals){.match = match, .lag = (double)NAN};
   for (size_t s = 0; s < match->series_count; s++) {
-    const double *residual = result->residual + match->series[s].first;
-    double lag = match->kind == STRUT_FIT_MOTION ? find_lag(residual, match->count) : (double)NAN;
+    const strut_fit_number *number = &result->numbers[match->series[s].first];
+    double lag = match->kind == STRUT_FIT_MOTION ? find_lag(number, match->count) : (double)NAN;
     if (!isnan(lag)) lags += lag, series += 1.0;
     for (size_t i = 0; i < match->count; i++) {
-      square += residual[i] * residual[i];
-      of->used += residual[i] != 0.0;
+      square += number[i].residual * number[i].residual;
+      of->used += number[i].residual != 0.0;
     }
   }
   if (series > 0.0) of->lag = lags / sqrt(series);
@@ -92,7 +93,8 @@ static const char *doubt_unit(strut_fit_result *result, const strut_fit_match *m
   const strut_data_column *column = match->series[0].column;
   double sums[2][3] = {{0.0}};
   for (size_t i = 0; column && i < match->count; i++) {
-    const double pair[] = {column->values[i], result->predicted[match->series[0].first + i]};
+    const double pair[] = {column->values[i],
+                           result->numbers[match->series[0].first + i].predicted};
     for (int k = 0; k < 2 && !isnan(pair[0]); k++)
       sums[k][0] += 1.0, sums[k][1] += pair[k], sums[k][2] += pair[k] * pair[k];
   }
@@ -456,6 +458,23 @@ STRUT_VALUES_HERE(omission_values, OMISSION, )
   X("part", "1", NUMBERS(d->part, result_of(of)->variable_count), "of each parameter in it")
 STRUT_VALUES_HERE(direction_values, DIRECTION, const strut_fit_direction *d = of->at)
 
+#define NUMBER_OF_MATCH(X)                                                                         \
+  X("match", "", TEXT(n->match->name), "", .column = {"match"})                                    \
+  X("of", "", TEXT(n->series->of), "", .column = {"of"})                                           \
+  X("at", "", NUMBER(n->at), "", .column = {"at"})                                                 \
+  X("measured", "", NUMBER(n->measured), "", .column = {"measured"})                               \
+  X("predicted", "", NUMBER(n->predicted), "", .column = {"predicted"})                            \
+  X("residual", "", NUMBER(n->residual), "", .column = {"residual"})
+STRUT_VALUES_HERE(number_values, NUMBER_OF_MATCH, const strut_fit_number *n = of->at)
+
+static bool is_measured(const strut_result_object *of, size_t k) {
+  return !isnan(((const strut_fit_result *)of->at)->numbers[k].measured);
+}
+
+#define NUMBERS_OF_FIT(X)                                                                          \
+  X("numbers", "", LIST_WHERE(r->numbers, r->number_count, is_measured), "", .rows = &number_values)
+STRUT_VALUES_HERE(fit_numbers, NUMBERS_OF_FIT, const strut_fit_result *r = of->at)
+
 static strut_value correlations_of(const strut_result_object *of, size_t i) {
   const strut_fit_result *r = of->at;
   return STRUT_VALUE_AS_NUMBERS(r->correlation + i * r->variable_count, r->variable_count);
@@ -550,27 +569,6 @@ static char *covariance_csv(const strut_fit_result *result) {
   return strut_buffer_take(&csv);
 }
 
-static char *residuals_csv(const strut_fit_result *result) {
-  strut_buffer csv = {0};
-  strut_buffer_add(&csv, "match,of,at,measured,predicted,residual\n");
-  for (size_t m = 0; m < result->fit->match_count; m++)
-    for (size_t s = 0; s < result->fit->matches[m].series_count; s++) {
-      const strut_fit_match *match = &result->fit->matches[m];
-      size_t first = match->series[s].first;
-      for (size_t i = 0; i < match->count; i++) {
-        const double numbers[] = {match->at ? match->at[i] : (double)NAN,
-                                  match->series[s].measured[i], result->predicted[first + i],
-                                  result->residual[first + i]};
-        if (isnan(numbers[1])) continue;
-        strut_buffer_add(&csv, "%s,", match->name);
-        strut_csv_add_text(&csv, "%s", match->series[s].of);
-        add_cells(&csv, numbers, 4);
-        strut_buffer_add(&csv, "\n");
-      }
-    }
-  return strut_buffer_take(&csv);
-}
-
 static char *fitted_yaml(const strut_fit_result *result, const char *model) {
   strut_buffer text = {0};
   const strut_fit_estimate *estimates = result->estimates + result->aligned_count;
@@ -619,7 +617,9 @@ strut_status strut_fit_write(const strut_fit_result *result, const char *directo
   if (!status)
     status = strut_file_write_block(directory, "covariance.csv", covariance_csv(result), error);
   if (!status)
-    status = strut_file_write_block(directory, "residuals.csv", residuals_csv(result), error);
+    status = strut_file_write_block(directory, "residuals.csv",
+                                    strut_values_csv(&fit_numbers, "numbers", NULL, result, NULL),
+                                    error);
   if (!status)
     status = strut_file_write_block(directory, "fitted.yaml", fitted_yaml(result, model), error);
   if (!status && strut_fit_is_identified(result))

@@ -27,9 +27,10 @@ static const double AT_ONCE = 1e-6;
 /* The numbers of a match's alignment at the parameters, which are 0 before. */
 static void find_alignment(const strut_fit_layout *layout, size_t match, const double *parameters,
                            double align[STRUT_FIT_ALIGNS_COUNT]) {
-  for (size_t i = 0; i < layout->aligned_count; i++)
-    if (layout->unknowns[i].match == match)
-      align[layout->unknowns[i].what] = strut_fit_value(layout, i, parameters[i]);
+  for (int what = 0; what < STRUT_FIT_ALIGNS_COUNT; what++) {
+    int32_t i = layout->parts[match].aligned[what];
+    if (i >= 0) align[what] = strut_fit_value(layout, (size_t)i, parameters[i]);
+  }
 }
 
 /* ---- predictions ---- */
@@ -55,15 +56,14 @@ double strut_fit_span(const strut_fit_match *match) {
   return match->at ? match->at[match->count - 1] - match->at[0] : 0.0;
 }
 
-/* Is the number early enough to count? */
-static bool is_early(const strut_fit_case *one, const strut_fit_match *match, size_t i) {
-  return match->kind != STRUT_FIT_MOTION ||
-         match->at[i] <= match->at[0] + one->share * strut_fit_span(match);
+/* Is the number of a match at this time early enough to count? */
+static bool is_early(const strut_fit_case *one, const strut_fit_match *match, double at) {
+  return match->kind != STRUT_FIT_MOTION || at <= match->at[0] + one->share * strut_fit_span(match);
 }
 
 static size_t count_early(const strut_fit_case *one, const strut_fit_match *match) {
   size_t count = match->count;
-  while (count > 1 && !is_early(one, match, count - 1)) count--;
+  while (count > 1 && !is_early(one, match, match->at[count - 1])) count--;
   return count;
 }
 
@@ -162,7 +162,7 @@ static double place(const strut_fit_case *one, size_t m, double align[STRUT_FIT_
   for (size_t s = 0; s < match->series_count; s++)
     for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
       size_t at = match->series[s].first + i;
-      double weight = one->weight[at], measured = one->layout->measured[at];
+      double weight = one->weight[at], measured = one->layout->numbers[at].measured;
       if (!(weight > 0.0)) continue;
       double other =
           sources[s].partner < 0 ? 0.0 : from[match->series[sources[s].partner].first + i];
@@ -329,24 +329,23 @@ static bool predict_table(prediction *self) {
 static void choose_delays(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
   double now = self->align[STRUT_FIT_DELAY], span = strut_fit_span(self->match);
-  for (size_t i = 0; i < layout->aligned_count; i++) {
-    if (layout->unknowns[i].match != self->index || layout->unknowns[i].what != STRUT_FIT_DELAY)
-      continue;
-    double low = strut_fit_value(layout, i, layout->low[i]);
-    double high = strut_fit_value(layout, i, layout->high[i]);
-    bool wide = high - low > (STRUT_FIT_OWN_CLOCK + 3.0) * span;
-    self->delay[0] = wide ? fmax(low, now - span) : low;
-    self->delay[1] = wide ? fmin(high, now + span) : high;
-  }
+  int32_t i = layout->parts[self->index].aligned[STRUT_FIT_DELAY];
+  if (i < 0) return;
+  double low = strut_fit_value(layout, (size_t)i, layout->low[i]);
+  double high = strut_fit_value(layout, (size_t)i, layout->high[i]);
+  bool wide = high - low > (STRUT_FIT_OWN_CLOCK + 3.0) * span;
+  self->delay[0] = wide ? fmax(low, now - span) : low;
+  self->delay[1] = wide ? fmin(high, now + span) : high;
 }
 
 /* Places a match that has been predicted, with the delay that has been found by then. */
 static void keep_placing(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
   self->one->placed_sum += place(self->one, self->index, self->align);
-  for (size_t i = 0; i < layout->aligned_count; i++)
-    if (layout->unknowns[i].match == self->index)
-      self->one->placing[i] = strut_fit_parameter(layout, i, self->align[layout->unknowns[i].what]);
+  for (int what = 0; what < STRUT_FIT_ALIGNS_COUNT; what++) {
+    int32_t i = layout->parts[self->index].aligned[what];
+    if (i >= 0) self->one->placing[i] = strut_fit_parameter(layout, (size_t)i, self->align[what]);
+  }
 }
 
 /* Do both have the same runs? Shifts and turns need none. */
@@ -441,44 +440,31 @@ const strut_fit_match *strut_fit_find_coarse(strut_fit_case *one, const double *
 
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out) {
   const strut_fit_layout *layout = one->layout;
-  double *weight = one->weight;
   one->share = share, one->left_out = left_out;
   one->known = false, one->used = 0;
-  for (size_t m = 0; m < layout->fit->match_count; m++) {
-    const strut_fit_match *match = &layout->fit->matches[m];
-    for (size_t s = 0; s < match->series_count; s++)
-      for (size_t i = 0; i < match->count; i++, weight++) {
-        const double *of = match->series[s].weights;
-        bool counts = (int32_t)m != left_out && !isnan(match->series[s].measured[i]);
-        *weight = (of ? sqrt(of[i]) : 1.0) / layout->parts[m].noise;
-        if (!counts || !is_early(one, match, i)) *weight = 0.0;
-        one->used += *weight > 0.0;
-      }
+  for (size_t k = 0; k < layout->count; k++) {
+    const strut_fit_number *number = &layout->numbers[k];
+    bool counts = (int32_t)(number->match - layout->fit->matches) != left_out &&
+                  !isnan(number->measured) && is_early(one, number->match, number->at);
+    one->weight[k] = counts ? number->factor : 0.0;
+    one->used += one->weight[k] > 0.0;
   }
 }
 
 /* Notes the first series with a number that counts, but which the model does not have. */
-static bool has_numbers(strut_fit_case *one, const double *residual) {
-  const strut_study_fit *fit = one->layout->fit;
-  for (size_t m = 0, k = 0; m < fit->match_count; m++)
-    for (size_t s = 0; s < fit->matches[m].series_count; s++)
-      for (size_t i = 0; i < fit->matches[m].count; i++, k++) {
-        if (isfinite(residual[k])) continue;
-        one->missing = &fit->matches[m].series[s];
-        strut_fail(&one->error, STRUT_DIVERGED, "the model has no '%.60s'", one->missing->of);
-        return false;
-      }
-  return true;
-}
-
 static bool find_residuals(void *context, const double *parameters, double *residual) {
   strut_fit_case *one = context;
   if (one->status || !predict(one, parameters)) return false;
   strut_fit_align_all(one, parameters, residual);
-  for (size_t k = 0; k < one->layout->count; k++)
-    residual[k] =
-        one->weight[k] > 0.0 ? one->weight[k] * (residual[k] - one->layout->measured[k]) : 0.0;
-  return has_numbers(one, residual);
+  for (size_t k = 0; k < one->layout->count; k++) {
+    const strut_fit_number *number = &one->layout->numbers[k];
+    residual[k] = one->weight[k] > 0.0 ? one->weight[k] * (residual[k] - number->measured) : 0.0;
+    if (isfinite(residual[k])) continue;
+    one->missing = number->series;
+    strut_fail(&one->error, STRUT_DIVERGED, "the model has no '%.60s'", one->missing->of);
+    return false;
+  }
+  return true;
 }
 
 double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size_t rank,

@@ -118,13 +118,13 @@ static void differentiate(solver *self, size_t i, double side[2]) {
 }
 
 /*
- * Does parameter i stay where it is? It is held, or outside of the box, where residuals do not depend on it; or they get
- * smaller where it cannot go: out of the box, or to where there are none. Else its derivative is there.
+ * Does parameter i stay where it is? It is outside of the box, where residuals do not depend on it; or they get smaller
+ * where it cannot go: out of the box, or to where there are none. Else its derivative is there, 0 where it is held.
  */
 static bool is_stopped(solver *self, size_t i) {
   double at = self->at[i], side[2], slope = 0.0;
   double near = fmin(CLOSE * self->problem->near, 0.5 * self->problem->step) * fmax(fabs(at), 1.0);
-  if (self->low[i] == self->high[i] || fabs(self->outside[i]) > near) return true;
+  if (fabs(self->outside[i]) > near) return true;
   differentiate(self, i, side);
   for (size_t j = 0; j < self->problem->count; j++) slope += self->derivative[j] * self->known[j];
   if (slope == 0.0 || side[slope < 0.0] > near) return false;
