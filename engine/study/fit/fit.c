@@ -519,7 +519,7 @@ static strut_status find_best(fitting *self, size_t count) {
 }
 
 /* Value, error and interval of a parameter. */
-static bool fill_estimate(fitting *self, size_t i) {
+static void fill_estimate(fitting *self, size_t i) {
   const strut_fit_layout *layout = self->layout;
   strut_fit_result *result = self->result;
   const strut_fit_unknown *of = &layout->unknowns[i];
@@ -554,16 +554,16 @@ static bool fill_estimate(fitting *self, size_t i) {
     estimate->verdict = STRUT_FIT_UNDETERMINED;
   estimate->at_bound = i >= first && fmin(at - layout->low[i], layout->high[i] - at) < AT_BOUND;
   if (estimate->at_bound) estimate->verdict = STRUT_FIT_BOUND;
-  return estimate->name && estimate->unit;
+  if (!estimate->name || !estimate->unit) result->out_of_memory = true;
 }
 
-static bool fill_estimates(fitting *self) {
+static void fill_estimates(fitting *self) {
   strut_fit_result *result = self->result;
   size_t n = self->layout->parameters, variables = result->variable_count;
-  bool fine = STRUT_ALLOCATE(&result->arena, STRUT_NEW(result->estimates, n),
-                             STRUT_NEW(result->correlation, variables * variables));
-  for (size_t i = 0; i < n && fine; i++) fine = fill_estimate(self, i);
-  return fine && strut_fit_judge(self->layout, &self->spectrum, result);
+  result->out_of_memory = !STRUT_ALLOCATE(&result->arena, STRUT_NEW(result->estimates, n),
+                                          STRUT_NEW(result->correlation, variables * variables));
+  for (size_t i = 0; i < n && !result->out_of_memory; i++) fill_estimate(self, i);
+  if (!result->out_of_memory) strut_fit_judge(self->layout, &self->spectrum, result);
 }
 
 /* ---- all of it ---- */
@@ -588,11 +588,12 @@ static strut_status run_stages(fitting *self) {
     if (!status) status = find_best(self, all + beside);
     result->settled = result->best == best;
   }
-  bool fine = status || !result->found || strut_fit_find_flaw(self->layout, result);
-  if (!status && fine) status = run_stage(self, ends, profiles, result->found && !*result->reason);
+  if (!status && result->found) strut_fit_find_flaw(self->layout, result);
+  bool holds = !status && result->found && !result->out_of_memory && !*result->reason;
+  if (!status) status = run_stage(self, ends, profiles, holds);
   if (!status) status = run_stage(self, ends + profiles, fit->omission_count, result->found);
-  if (!status && fine && result->found) fine = fill_estimates(self);
-  return fine ? status : strut_no_memory(self->points.error, "");
+  if (!status && result->found && !result->out_of_memory) fill_estimates(self);
+  return result->out_of_memory ? strut_no_memory(self->points.error, "") : status;
 }
 
 strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,

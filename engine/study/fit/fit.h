@@ -102,6 +102,7 @@ typedef struct strut_fit_result {
   double coarseness;             /* 0: not at all */
   const char *reason; /* why the model does not explain the data or starts disagree; or "" */
   const strut_fit_series *missing; /* the model has no such number: nothing is found; or NULL */
+  bool out_of_memory;
   strut_arena arena;
 } strut_fit_result;
 

@@ -148,13 +148,13 @@ enum { STRUT_FIT_MOST_PLACES = 50 };
 /** Parameters (parameters) where a start begins: the first where the study says, the others spread evenly. */
 void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters);
 
-/* ---- fit_report.c ---- */
+/* ---- fit_report.c: the result notes where memory is out ---- */
 
 /**
  * Describes the residuals of the best fit, and gives as the reason why it does not explain the data, or "". A match of its
- * own has no more degrees of freedom than numbers. False: memory is out.
+ * own has no more degrees of freedom than numbers.
  */
-bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result);
-/** Fills what starts and spectrum say besides, and the verdict of each estimate. False: memory is out. */
-bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
+void strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result);
+/** Fills what starts and spectrum say besides, and the verdict of each estimate. */
+void strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      strut_fit_result *result);
