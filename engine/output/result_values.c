@@ -368,7 +368,6 @@ static void add_lines(strut_buffer *csv, const strut_value_rows *rows, const cha
     const char *item =
         none ? (const char *)zeros : (const char *)values[at].items + i * values[at].size;
     const strut_result_object within = {item, of, of->scene, i};
-    if (values[at].has && !values[at].has(of, i)) continue;
     if (path[length]) add_lines(csv, rows->row[at].rows, path + length + 1, before, &within);
     for (int names = !csv->length; names >= none && !path[length]; names--) {
       line cells = {csv, names, "", ""};

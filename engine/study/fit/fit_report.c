@@ -457,12 +457,8 @@ STRUT_VALUES_HERE(direction_values, DIRECTION, const strut_fit_direction *d = of
   X("residual", "", NUMBER(n->residual), "", .column = {"residual"})
 STRUT_VALUES_HERE(number_values, NUMBER_OF_MATCH, const strut_fit_number *n = of->at)
 
-static bool is_measured(const strut_result_object *of, size_t k) {
-  return !isnan(((const strut_fit_result *)of->at)->numbers[k].measured);
-}
-
 #define NUMBERS_OF_FIT(X)                                                                          \
-  X("numbers", "", LIST_WHERE(r->numbers, r->number_count, is_measured), "", .rows = &number_values)
+  X("numbers", "", LIST(r->numbers, r->number_count), "", .rows = &number_values)
 STRUT_VALUES_HERE(fit_numbers, NUMBERS_OF_FIT, const strut_fit_result *r = of->at)
 
 static strut_value correlations_of(const strut_result_object *of, size_t i) {
@@ -555,6 +551,17 @@ static char *covariance_csv(const strut_fit_result *result) {
   return strut_buffer_take(&csv);
 }
 
+/* Of the numbers that were measured. */
+static char *residuals_csv(const strut_fit_result *result) {
+  strut_fit_result given = {.numbers = strut_allocate(result->number_count, sizeof *given.numbers)};
+  for (size_t k = 0; k < result->number_count && given.numbers; k++)
+    if (!isnan(result->numbers[k].measured))
+      given.numbers[given.number_count++] = result->numbers[k];
+  char *csv = given.numbers ? strut_values_csv(&fit_numbers, "numbers", NULL, &given, NULL) : NULL;
+  strut_release(given.numbers);
+  return csv;
+}
+
 static char *fitted_yaml(const strut_fit_result *result, const char *model) {
   strut_buffer text = {0};
   quantity_text value;
@@ -600,7 +607,7 @@ strut_status strut_fit_write(const strut_fit_result *result, const char *directo
     char *text;
   } files[] = {{"fit.csv", strut_values_csv(&strut_fit_values, "parameters", NULL, result, NULL)},
                {"covariance.csv", covariance_csv(result)},
-               {"residuals.csv", strut_values_csv(&fit_numbers, "numbers", NULL, result, NULL)},
+               {"residuals.csv", residuals_csv(result)},
                {"fitted.yaml", fitted_yaml(result, model)},
                {"uncertain.yaml", certain ? uncertain_yaml(result) : NULL}};
   strut_status status = STRUT_OK;
