@@ -82,6 +82,12 @@ typedef struct strut_fit_case {
   double *latest;      /* (parameters) of that */
   bool known;
   strut_study_value *values; /* of all columns of the axes */
+  /* of the match that is being predicted */
+  const strut_fit_match *match;
+  size_t index;
+  double align[STRUT_FIT_ALIGNS_COUNT];
+  double delay[2];   /* in which range it is to be found; both 0: it is known */
+  double from, to;   /* times of the samples from which it is found */
   double *placing;   /* parameters whose alignments are to be found while the model is predicted */
   bool delays;       /* with their delays */
   int32_t elsewhere; /* this match takes one of the next best, by its rank; -1: none does */
