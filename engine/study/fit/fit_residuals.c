@@ -53,7 +53,7 @@ static bool is_early(const strut_fit_case *one, const strut_fit_match *match, do
 
 static size_t count_early(const strut_fit_case *one, const strut_fit_match *match) {
   size_t count = match->count;
-  while (count > 1 && !is_early(one, match, match->at[count - 1])) count--;
+  while (count > 1 && match->at && !is_early(one, match, match->at[count - 1])) count--;
   return count;
 }
 
@@ -108,28 +108,25 @@ static size_t spread_samples(strut_fit_case *one, double *time) {
   return count;
 }
 
-/* Times of the samples of a match; returns how many. */
+/* Times of the samples of a match, and one more, for a run needs some time; returns how many. */
 static size_t place_samples(const strut_fit_case *one, double *time) {
-  const strut_fit_match *match = one->match;
-  size_t count = match->at ? count_early(one, match) : 1;
+  const double *at = one->match->at; /* NULL: all are taken where the run starts */
+  size_t count = count_early(one, one->match);
   for (size_t i = 0; i < count; i++) {
-    double later = match->at && i + 1 < count ? match->at[i + 1] - match->at[i] : 0.0;
-    double at = match->at ? match->at[i] + one->between * later : 0.0;
-    time[i] = match->at ? fmax(at - one->align[STRUT_FIT_DELAY], 0.0) : 0.0;
+    double later = at && i + 1 < count ? at[i + 1] - at[i] : 0.0;
+    time[i] = at ? fmax(at[i] + one->between * later - one->align[STRUT_FIT_DELAY], 0.0) : 0.0;
   }
-  if (count == 1) time[count++] = time[0];
-  time[count - 1] = fmax(time[count - 1], AT_ONCE);
-  return count;
+  time[count] = fmax(time[count - 1], AT_ONCE);
+  return count + 1;
 }
 
-/* Takes the samples of a run, in the order: number, series; without times all are the first. */
+/* Takes the samples of a run, in the order: number, series. */
 static void take_samples(const strut_fit_case *one, const double *sampled) {
   const strut_fit_match *match = one->match;
-  size_t count = match->at ? count_early(one, match) : match->count;
+  size_t count = count_early(one, match);
   for (size_t i = 0; i < count; i++)
     for (size_t s = 0; s < match->series_count; s++)
-      one->predicted[match->series[s].first + i] =
-          sampled[(match->at ? i : 0) * match->series_count + s];
+      one->predicted[match->series[s].first + i] = sampled[i * match->series_count + s];
 }
 
 /* ---- placing ---- */
