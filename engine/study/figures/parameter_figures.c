@@ -53,7 +53,7 @@ static void add_residuals(strut_figure *figure, const strut_fit_result *result,
   if (result->fit->match_count > 1) panel->title = match->name;
   for (size_t s = 0; s < match->series_count; s++) {
     const strut_fit_number *number = result->numbers + match->series[s].first;
-    if (match->series[s].empty) continue;
+    if (!match->series[s].column) continue;
     strut_series *dots = strut_add_series(figure, panel, match->series[s].of);
     dots->kind = STRUT_SERIES_DOTS;
     for (size_t i = 0; i < match->count; i++)
@@ -105,7 +105,7 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
   for (size_t m = 0; m < result->fit->match_count; m++) {
     const strut_fit_match *match = &result->fit->matches[m];
     for (size_t s = 0; s < match->series_count; s++)
-      if (!match->series[s].empty) add_data(&figures[0], result, match, &match->series[s]);
+      if (match->series[s].column) add_data(&figures[0], result, match, &match->series[s]);
     add_residuals(&figures[1], result, match);
   }
   for (size_t k = 0; k < result->variable_count; k++) add_profile(&figures[2], result, k);

@@ -93,9 +93,10 @@ static double list_numbers(strut_fit_layout *layout, size_t m) {
   for (size_t s = 0; s < match->series_count; s++)
     for (size_t i = 0; i < match->count; i++, number++) { /* comparisons leave out NANs */
       const strut_fit_series *series = &match->series[s];
+      const strut_data_column *of = series->column;
       *number = (strut_fit_number){match, series, match->at ? match->at[i] : (double)NAN,
-                                   .measured = series->measured[i],
-                                   .factor = series->weights ? sqrt(series->weights[i]) : 1.0};
+                                   .measured = of ? of->values[i] : (double)NAN,
+                                   .factor = of && of->weights ? sqrt(of->weights[i]) : 1.0};
       least = fmin(least, number->measured);
       most = fmax(most, number->measured);
     }
@@ -135,7 +136,7 @@ static bool add_alignments(strut_fit_layout *layout, size_t m, double own, doubl
   bool free[] = {false, false, match->align.rotate, match->align.delay}, fine = true;
   for (size_t s = 0; s < match->series_count && match->align.shift; s++) {
     int axis = layout->parts[m].sources[s].axis;
-    if (axis >= 0 && !match->series[s].empty) free[axis] = true;
+    if (axis >= 0 && match->series[s].column) free[axis] = true;
   }
   for (int what = 0; what < STRUT_FIT_ALIGNS_COUNT; what++) {
     layout->parts[m].aligned[what] = -1;

@@ -101,7 +101,7 @@ static const char *doubt_unit(strut_fit_result *result, const strut_fit_match *m
                               const char *flaw) {
   const strut_data_column *column = match->series[0].column;
   double sums[2][3] = {{0.0}};
-  for (size_t i = 0; column && i < match->count; i++) {
+  for (size_t i = 0; column->name && i < match->count; i++) {
     const double pair[] = {column->values[i],
                            result->numbers[match->series[0].first + i].predicted};
     for (int k = 0; k < 2 && !isnan(pair[0]); k++)
@@ -110,7 +110,7 @@ static const char *doubt_unit(strut_fit_result *result, const strut_fit_match *m
   for (int k = 0; k < 2 && match->align.shift; k++)
     sums[k][2] -= sums[k][1] * sums[k][1] / fmax(sums[k][0], 1.0);
   double times = sqrt(sums[1][2] / sums[0][2]);
-  if (!column || !(fabs(log(times)) > log(MUCH))) return flaw;
+  if (!column->name || !(fabs(log(times)) > log(MUCH))) return flaw;
   return SAY(result,
              "%s; the model's numbers are %.2g times those of '%.40s [%.20s]': check this unit",
              flaw, times, column->name, column->unit);

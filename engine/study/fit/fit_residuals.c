@@ -108,7 +108,7 @@ static size_t spread_samples(strut_fit_case *one, double *time) {
   return count;
 }
 
-/* Times of the samples of a match, and one more, for a run needs some time; returns how many. */
+/* Times of the samples of a match, the last after some time, for a run needs some; returns how many. */
 static size_t place_samples(const strut_fit_case *one, double *time) {
   const double *at = one->match->at; /* NULL: all are taken where the run starts */
   size_t count = count_early(one, one->match);
@@ -116,8 +116,9 @@ static size_t place_samples(const strut_fit_case *one, double *time) {
     double later = at && i + 1 < count ? at[i + 1] - at[i] : 0.0;
     time[i] = at ? fmax(at[i] + one->between * later - one->align[STRUT_FIT_DELAY], 0.0) : 0.0;
   }
-  time[count] = fmax(time[count - 1], AT_ONCE);
-  return count + 1;
+  if (!at || count == 1) time[count] = time[count - 1], count++;
+  time[count - 1] = fmax(time[count - 1], AT_ONCE);
+  return count;
 }
 
 /* Takes the samples of a run, in the order: number, series. */

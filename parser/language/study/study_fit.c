@@ -79,8 +79,8 @@ static void divide(reading *self, const strut_tree *map) {
 /* Refuses number i behind a key, in the file of its table where it has one. */
 static bool refuse(const reading *self, const strut_tree *value, const strut_data_column *column,
                    size_t i, const char *flaw) {
-  return column ? strut_refuse_data(self->reader, value, self->table, column, i, flaw)
-                : strut_report_error(self->reader, value->place, "%s", flaw);
+  return self->table ? strut_refuse_data(self->reader, value, self->table, column, i, flaw)
+                     : strut_report_error(self->reader, value->place, "%s", flaw);
 }
 
 /* All numbers of a match are columns of one table, or single ones (NULL). */
@@ -163,25 +163,24 @@ static void read_noise(reading *self) {
                        self->to->name);
 }
 
-/* A number, or a column of the match's table. */
-static bool read_numbers(reading *self, const strut_tree *value, strut_fit_series *series) {
+/* A column of the match's table, or of a number of its own; NULL: that was reported. */
+static const strut_data_column *read_numbers(reading *self, const strut_tree *value,
+                                             const char *of) {
   bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted && !self->to->at &&
                strpbrk(value->text, "0123456789+-") == value->text;
+  const strut_data_column *column = plain ? NULL : read_column(self, value, of, NULL);
+  if (column && column->gap_count == self->to->count)
+    return refuse(self, value, column, 0, "there are no numbers") ? column : NULL;
+  if (!plain) return column;
   strut_quantity q;
-  double *number = plain ? strut_study_allocate(self->study, 1, sizeof *number) : NULL;
-  const strut_data_column *column = plain ? NULL : read_column(self, value, series->of, NULL);
-  if (plain && (!number || !strut_read_quantity(self->reader, value, series->of, self->owner, &q) ||
-                !keep_table(self, value, NULL)))
-    return false;
-  if (!plain && !column) return false;
-  if (plain) *number = q.value;
-  bool bare = plain ? q.bare : strcmp(column->unit, "1") == 0;
-  series->column = column;
-  series->measured = plain ? number : column->values;
-  series->weights = plain ? NULL : column->weights;
-  series->unit = bare ? "1" : strut_dimension_unit(plain ? q.dimension : column->dimension);
-  return plain || column->gap_count < self->to->count ||
-         refuse(self, value, column, 0, "there are no numbers");
+  double *number = strut_study_allocate(self->study, 1, sizeof *number);
+  strut_data_column *own = strut_study_allocate(self->study, 1, sizeof *own);
+  if (!number || !own || !strut_read_quantity(self->reader, value, of, self->owner, &q) ||
+      !keep_table(self, value, NULL))
+    return NULL;
+  *number = q.value;
+  *own = (strut_data_column){.unit = q.bare ? "1" : "", .dimension = q.dimension, .values = number};
+  return own;
 }
 
 /* A noise without unit is in that of the numbers, which must have one in common, and finite squares in the sum. */
@@ -195,7 +194,7 @@ static bool check_numbers(reading *self, const strut_tree *value, const strut_fi
                               "dimension a match of their own",
                               to->name, to->noise_unit, series->unit);
   for (size_t i = 0; i < to->count; i++)
-    if (fabs(series->measured[i]) > STRUT_DATA_MOST_NUMBER * noise)
+    if (fabs(series->column->values[i]) > STRUT_DATA_MOST_NUMBER * noise)
       return refuse(self, value, series->column, i,
                     "a number this large has no finite square in the sum of a fit");
   return true;
@@ -205,7 +204,10 @@ static void add_series(reading *self, const strut_tree *key) {
   strut_fit_match *to = self->to;
   strut_fit_series *series = &to->series[to->series_count];
   *series = (strut_fit_series){.of = key->text, .place = {key->place.line, key->place.column}};
-  if (!read_numbers(self, key->next, series) || !check_numbers(self, key->next, series)) return;
+  const strut_data_column *column = series->column = read_numbers(self, key->next, key->text);
+  if (!column) return;
+  series->unit = strcmp(column->unit, "1") == 0 ? "1" : strut_dimension_unit(column->dimension);
+  if (!check_numbers(self, key->next, series)) return;
   to->series_count++;
   bool moves = to->kind == STRUT_FIT_MOTION || to->kind == STRUT_FIT_REST;
   strut_study_file *file = self->study->file;
@@ -216,9 +218,7 @@ static void add_series(reading *self, const strut_tree *key) {
 /* The other coordinates of places, which were not measured but turn with those that were. */
 static void add_partners(reading *self) {
   strut_fit_match *to = self->to;
-  double *gaps = strut_study_allocate(self->study, to->count, sizeof *gaps);
-  for (size_t i = 0; gaps && i < to->count; i++) gaps[i] = (double)NAN;
-  for (const strut_tree *key = self->rest->first; key && gaps; key = key->next->next) {
+  for (const strut_tree *key = self->rest->first; key; key = key->next->next) {
     size_t length = strlen(key->text);
     char *text = strut_arena_text(&self->study->file->arena, key->text, length);
     char axis = text && length > 2 && text[length - 2] == '.' ? text[length - 1] : '\0';
@@ -228,11 +228,7 @@ static void add_partners(reading *self) {
     strut_tree other = *key;
     other.text = text;
     to->series[to->series_count++] =
-        (strut_fit_series){.of = text,
-                           .place = {key->place.line, key->place.column},
-                           .unit = "m",
-                           .measured = gaps,
-                           .empty = true};
+        (strut_fit_series){.of = text, .place = {key->place.line, key->place.column}, .unit = "m"};
     if (!strut_study_measure(self->study->file, &other)) self->reader->out_of_memory = true;
   }
 }
@@ -390,8 +386,7 @@ static void refuse_twice(strut_study_reader *reader, const strut_fit_match *a,
   for (size_t s = 0; s < a->series_count; s++)
     for (size_t k = 0; k < b->series_count; k++) {
       const strut_fit_series *first = &b->series[k], *second = &a->series[s];
-      if (first != second && !second->empty && first->measured == second->measured &&
-          (a != b || k < s))
+      if (second->column && first->column == second->column && (a != b || k < s))
         strut_report_error(reader->reader,
                            strut_place_at(second->place.line, second->place.column, 1),
                            "the numbers of '%s' are compared already, with '%s' of match '%s'",
