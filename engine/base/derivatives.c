@@ -20,8 +20,8 @@ static const double OF_BEND = 3.4641016151377544;
 /* Two points along a direction: `central` at 1 and -1, else at 1 and 2 steps. */
 typedef struct pair {
   bool central;
-  double *step;      /* (parameters) 0: another one's */
-  double *values[2]; /* (outputs) */
+  double *step;                  /* (parameters) 0: another one's */
+  double *values[2], *errors[2]; /* (outputs) */
   strut_status status[2];
   strut_error error[2];
 } pair;
@@ -40,26 +40,19 @@ const char *strut_derivative_words(strut_derivative_verdict verdict) {
   return words[verdict];
 }
 
-static strut_status evaluate(const differences *self, const double *at, double *outputs,
-                             double *errors, strut_error *error) {
+/* Outputs so many steps away from the point, and errors; NAN where there are none. */
+static strut_status evaluate(const differences *self, const double *step, double length,
+                             double *outputs, double *errors, strut_error *error) {
   const strut_derivatives_task *task = self->task;
+  double *at = strut_allocate(task->parameter_count, sizeof *at);
+  if (!at) return strut_no_memory(error, "");
+  for (size_t i = 0; i < task->parameter_count; i++)
+    at[i] = task->parameters[i].value + length * step[i];
   for (size_t j = 0; j < task->output_count; j++) outputs[j] = errors[j] = (double)NAN;
   strut_status status = task->evaluate(task->context, at, outputs, errors, error);
   for (size_t j = 0; j < task->output_count && status; j++) outputs[j] = (double)NAN;
-  return status == STRUT_NO_MEMORY || status == STRUT_INTERRUPTED ? status : STRUT_OK;
-}
-
-/* One end of a pair. */
-static strut_status evaluate_end(const differences *self, pair *along, int end) {
-  const strut_derivatives_task *task = self->task;
-  size_t n = task->parameter_count, m = task->output_count;
-  double *at = strut_allocate(n + m, sizeof *at);
-  if (!at) return strut_no_memory(&along->error[end], "");
-  double length = end == 0 ? 1.0 : along->central ? -1.0 : 2.0;
-  for (size_t i = 0; i < n; i++) at[i] = task->parameters[i].value + length * along->step[i];
-  strut_status status = evaluate(self, at, along->values[end], at + n, &along->error[end]);
   strut_release(at);
-  return status;
+  return status == STRUT_NO_MEMORY || status == STRUT_INTERRUPTED ? status : STRUT_OK;
 }
 
 /* What is no more than noise of an output. */
@@ -92,21 +85,6 @@ static double choose_step(const strut_derivatives_parameter *by, double noise, b
   return by->value + h - by->value;
 }
 
-static bool prepare(differences *self) {
-  const strut_derivatives_task *task = self->task;
-  size_t n = task->parameter_count, m = task->output_count;
-  double noise = largest_noise(self);
-  for (size_t i = 0; i <= n; i++) {
-    double *block = strut_arena_allocate(&self->arena, n + 2 * m, sizeof *block);
-    if (!block) return false;
-    self->pairs[i].step = block;
-    self->pairs[i].values[0] = block + n, self->pairs[i].values[1] = block + n + m;
-  }
-  for (size_t i = 0; i < n; i++)
-    self->pairs[i].step[i] = choose_step(&task->parameters[i], noise, &self->pairs[i].central);
-  return true;
-}
-
 /* Evaluates pairs from the first on. */
 static strut_status evaluate_pairs(const differences *self, size_t first, size_t pairs,
                                    strut_error *error) {
@@ -118,7 +96,9 @@ static strut_status evaluate_pairs(const differences *self, size_t first, size_t
 #endif
   for (int64_t k = begin; k < count; k++) {
     pair *along = &self->pairs[k / 2];
-    along->status[k % 2] = evaluate_end(self, along, (int)(k % 2));
+    double length = k % 2 == 0 ? 1.0 : along->central ? -1.0 : 2.0;
+    along->status[k % 2] = evaluate(self, along->step, length, along->values[k % 2],
+                                    along->errors[k % 2], &along->error[k % 2]);
   }
   for (int64_t k = begin; k < count; k++) {
     const pair *along = &self->pairs[k / 2];
@@ -231,20 +211,27 @@ static void conclude(const differences *self, size_t j, strut_derivative *to) {
 static strut_status find(differences *self, strut_error *error) {
   const strut_derivatives_task *task = self->task;
   size_t n = task->parameter_count, m = task->output_count;
-  strut_status status = STRUT_OK;
-  double *at;
-  if (!STRUT_ALLOCATE(&self->arena, STRUT_NEW(at, n), STRUT_NEW(self->outputs, m),
-                      STRUT_NEW(self->errors, m), STRUT_NEW(self->pairs, n + 1)))
-    return strut_no_memory(error, "");
-  for (size_t i = 0; i < n; i++) at[i] = task->parameters[i].value;
+  strut_arena *arena = &self->arena;
+  bool fine = STRUT_NUMBERS(arena, m, &self->outputs, &self->errors) &&
+              STRUT_ALLOCATE(arena, STRUT_NEW(self->pairs, n + 1));
+  for (size_t i = 0; i <= n && fine; i++) {
+    pair *along = &self->pairs[i];
+    fine = STRUT_NUMBERS(arena, n, &along->step) &&
+           STRUT_NUMBERS(arena, m, &along->values[0], &along->values[1], &along->errors[0],
+                         &along->errors[1]);
+  }
+  if (!fine) return strut_no_memory(error, "");
   for (size_t j = 0; j < m && task->outputs; j++) {
     self->outputs[j] = task->outputs[j];
     self->errors[j] = task->errors ? task->errors[j] : (double)NAN;
   }
-  if (!task->outputs) status = evaluate(self, at, self->outputs, self->errors, error);
-  if (status) return status;
-  if (!prepare(self)) return strut_no_memory(error, "");
-  status = evaluate_pairs(self, 0, n, error);
+  strut_status status =
+      task->outputs ? STRUT_OK
+                    : evaluate(self, self->pairs[0].step, 0.0, self->outputs, self->errors, error);
+  for (size_t i = 0; i < n && !status; i++)
+    self->pairs[i].step[i] =
+        choose_step(&task->parameters[i], largest_noise(self), &self->pairs[i].central);
+  if (!status) status = evaluate_pairs(self, 0, n, error);
   if (status) return status;
   join_steps(self);
   status = evaluate_pairs(self, n, 1, error);

@@ -117,12 +117,11 @@ typedef enum strut_fit_kind {
 typedef struct strut_fit_series {
   const char *of; /* quantity that the model measures, or a column */
   strut_search_place place;
-  const char *unit;                /* of the numbers, SI; "1": none */
-  const double *measured;          /* (count of the match) SI; NAN: a gap */
-  const double *weights;           /* (count) of their squared residuals; NULL: 1 */
-  const strut_data_column *column; /* whose values they are; NULL: no column's */
-  size_t first;                    /* of them among the numbers of all matches */
-  bool empty;                      /* all are gaps: the other coordinate of a place that turns */
+  const char *unit; /* of the numbers, SI; "1": none */
+  /* (count of the match) its values; without a name one of its own; NULL: all are gaps, as of the other coordinate of a
+     place that turns */
+  const strut_data_column *column;
+  size_t first; /* of them among the numbers of all matches */
 } strut_fit_series;
 
 /** Alignment of the model with what was measured that is found together with the parameters. */

@@ -17,41 +17,34 @@ static strut_axis axis_of_match(const strut_fit_match *match) {
   return strut_axis_of("number", "");
 }
 
-static double place_of(const strut_fit_match *match, size_t i) {
-  return match->at ? match->at[i] : (double)i + 1.0;
-}
-
-/* Adds dots where something was measured: these numbers times `unit`. */
-static strut_series *add_dots(strut_figure *figure, strut_panel *panel, const char *label,
-                              const strut_fit_match *match, size_t s, const double *numbers,
-                              double unit) {
-  strut_series *dots = strut_add_series(figure, panel, label);
-  dots->kind = STRUT_SERIES_DOTS;
-  for (size_t i = 0; i < match->count; i++)
-    if (!isnan(match->series[s].measured[i]))
-      strut_add_point(figure, dots, place_of(match, i), numbers[i] * unit);
-  return dots;
+/* Number i of a match over its time or displacement, or over i. */
+static void add_number(strut_figure *figure, strut_series *to, const strut_fit_number *number,
+                       size_t i, double value) {
+  strut_add_point(figure, to, isnan(number->at) ? (double)i + 1.0 : number->at, value);
 }
 
 /* Numbers as dots, and the model as a line, a panel for each series. */
-static void add_data(strut_figure *figure, const strut_fit_result *result, size_t m, size_t s) {
-  const strut_fit_match *match = &result->fit->matches[m];
-  const double *model = result->predicted + match->series[s].first;
+static void add_data(strut_figure *figure, const strut_fit_result *result,
+                     const strut_fit_match *match, const strut_fit_series *of) {
+  const strut_fit_number *number = result->numbers + of->first;
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
-  panel->y = strut_axis_in(match->series[s].of, match->series[s].unit, (strut_file_unit){0});
+  panel->y = strut_axis_in(of->of, of->unit, (strut_file_unit){0});
   if (result->fit->match_count > 1) panel->title = match->name;
-  add_dots(figure, panel, "measured", match, s, match->series[s].measured, 1.0)->look = 1;
+  strut_series *dots = strut_add_series(figure, panel, "measured");
+  dots->kind = STRUT_SERIES_DOTS, dots->look = 1;
+  for (size_t i = 0; i < match->count; i++)
+    if (!isnan(number[i].measured)) add_number(figure, dots, &number[i], i, number[i].measured);
   strut_series *line = strut_add_series(figure, panel, "model");
   line->look = 0;
   line->unmarked = true;
   for (size_t i = 0; i < match->count; i++)
-    strut_add_point(figure, line, place_of(match, i), model[i]);
+    add_number(figure, line, &number[i], i, number[i].predicted);
 }
 
 /* Residuals of a match, all of whose series are in one panel. */
-static void add_residuals(strut_figure *figure, const strut_fit_result *result, size_t m) {
-  const strut_fit_match *match = &result->fit->matches[m];
+static void add_residuals(strut_figure *figure, const strut_fit_result *result,
+                          const strut_fit_match *match) {
   bool known = match->noise > 0.0;
   double unit = known ? 1.0 : 1.0 / result->scale;
   strut_panel *panel = strut_add_panel(figure);
@@ -59,9 +52,13 @@ static void add_residuals(strut_figure *figure, const strut_fit_result *result, 
   panel->y = strut_axis_of(known ? "residual over noise" : "residual over its deviation", "");
   if (result->fit->match_count > 1) panel->title = match->name;
   for (size_t s = 0; s < match->series_count; s++) {
-    const double *residual = result->residual + match->series[s].first;
-    if (match->series[s].empty) continue;
-    add_dots(figure, panel, match->series[s].of, match, s, residual, unit);
+    const strut_fit_number *number = result->numbers + match->series[s].first;
+    if (!match->series[s].column) continue;
+    strut_series *dots = strut_add_series(figure, panel, match->series[s].of);
+    dots->kind = STRUT_SERIES_DOTS;
+    for (size_t i = 0; i < match->count; i++)
+      if (!isnan(number[i].measured))
+        add_number(figure, dots, &number[i], i, number[i].residual * unit);
   }
   strut_add_band(figure, panel, -USUAL, USUAL, "95 % of the usual ones")->level = true;
 }
@@ -106,9 +103,10 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
                                 .least_width = 200.0,
                                 .one_legend = i != 1};
   for (size_t m = 0; m < result->fit->match_count; m++) {
-    for (size_t s = 0; s < result->fit->matches[m].series_count; s++)
-      if (!result->fit->matches[m].series[s].empty) add_data(&figures[0], result, m, s);
-    add_residuals(&figures[1], result, m);
+    const strut_fit_match *match = &result->fit->matches[m];
+    for (size_t s = 0; s < match->series_count; s++)
+      if (match->series[s].column) add_data(&figures[0], result, match, &match->series[s]);
+    add_residuals(&figures[1], result, match);
   }
   for (size_t k = 0; k < result->variable_count; k++) add_profile(&figures[2], result, k);
   strut_add_key(&figures[2], STRUT_KEY_DOT, (strut_pen){.colour = strut_grey(0.1), .width = 0.6},

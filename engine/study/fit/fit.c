@@ -53,6 +53,12 @@ enum { START, BESIDE, LOW, HIGH, WITHOUT };
 static const char *const kinds[] = {"start", "beside", "low", "high", "without"};
 static const char *const columns[] = {"kind", "of", "end", "sum", "used", "evaluations"};
 
+/* A place among the parameters, and the sum there. */
+typedef struct place {
+  strut_fit_solution is;
+  double at[STRUT_LEAST_SQUARES_MOST];
+} place;
+
 /* A fit of a study while it is made. */
 typedef struct fitting {
   const strut_fit_layout *layout;
@@ -60,9 +66,8 @@ typedef struct fitting {
   int64_t first, count; /* rows of the present stage */
   strut_fit_result *result;
   strut_fit_spectrum spectrum; /* at the best, once it is known */
-  const double *best;          /* (parameters) */
-  double least;                /* sum there */
-  double rise;                 /* of the sum to an end of an interval */
+  place best;
+  double rise; /* of the sum to an end of an interval */
 } fitting;
 
 /* The match with the k-th free delay. */
@@ -118,52 +123,43 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
 }
 
 /* Fits all parameters but `held` (-1: none), in a few steps unless that is 0, which need not end near. */
-static strut_status solve(strut_fit_case *one, int32_t held, int32_t steps, double *parameters,
-                          strut_fit_solution *solution) {
+static void solve(strut_fit_case *one, int32_t held, int32_t steps, place *to) {
   strut_least_squares problem = strut_fit_problem(one);
   problem.held = held;
   if (steps) problem.most_steps = steps, problem.near = NEAR_FIRST;
   problem.one_sided = steps == STEPS_FIRST;
-  strut_status status = strut_least_squares_solve(&problem, parameters, solution);
-  if (one->spent) solution->end = STRUT_FIT_SPENT;
-  return status;
+  if (strut_least_squares_solve(&problem, to->at, &to->is))
+    one->status = strut_no_memory(&one->error, "");
+  if (one->spent) to->is.end = STRUT_FIT_SPENT;
 }
 
 /*
  * Fits short motions first, so that long ones begin near, and in the end once more where they are better placed
  * elsewhere.
  */
-static strut_status fit_from(strut_fit_case *one, bool delays, double *parameters,
-                             strut_fit_solution *solution) {
-  double placed[STRUT_LEAST_SQUARES_MOST];
-  size_t bytes = one->layout->parameters * sizeof *placed;
-  strut_status status = STRUT_OK;
+static void fit_from(strut_fit_case *one, bool delays, place *to) {
   strut_fit_choose(one, PLACED, -1);
-  strut_fit_place(one, delays, -1, 0, parameters);
-  for (int k = 0; k <= SHARES && !status; k++) {
+  strut_fit_place(one, delays, -1, 0, to->at);
+  for (int k = 0; k <= SHARES && !one->status; k++) {
     bool last = k + 1 >= SHARES;
+    place placed = *to;
     strut_fit_choose(one, last ? 1.0 : shares[k], -1);
     if (!last && one->used < FEW * one->layout->parameters) continue;
-    memcpy(placed, parameters, bytes);
-    if (k == SHARES && !(strut_fit_place(one, true, -1, 0, placed) < BETTER * solution->sum)) break;
-    memcpy(parameters, placed, bytes);
-    status = solve(one, -1, last ? 0 : STEPS_FIRST, parameters, solution);
-    if (one->spent && !last) solution->sum = HUGE_VAL; /* of short motions alone */
-    if (one->spent || solution->end == STRUT_FIT_FAILED) break;
+    if (k == SHARES && !(strut_fit_place(one, true, -1, 0, placed.at) < BETTER * to->is.sum)) break;
+    *to = placed;
+    solve(one, -1, last ? 0 : STEPS_FIRST, to);
+    if (one->spent && !last) to->is.sum = HUGE_VAL; /* of short motions alone */
+    if (one->spent || to->is.end == STRUT_FIT_FAILED) break;
   }
-  return status;
 }
 
 /* The fit of a start, which begins elsewhere where the model cannot be computed there. */
-static strut_status fit_start(strut_fit_case *one, int64_t start, double *parameters,
-                              strut_fit_solution *solution) {
-  strut_status status = STRUT_OK;
-  for (int k = 0; k < STRUT_FIT_MOST_PLACES && !status && !one->status; k++) {
-    strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
-    status = fit_from(one, start % 4 != 1, parameters, solution);
-    if (one->spent || solution->end != STRUT_FIT_FAILED) break;
+static void fit_start(strut_fit_case *one, int64_t start, place *to) {
+  for (int k = 0; k < STRUT_FIT_MOST_PLACES && !one->status; k++) {
+    strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, to->at);
+    fit_from(one, start % 4 != 1, to);
+    if (one->spent || to->is.end != STRUT_FIT_FAILED) break;
   }
-  return status;
 }
 
 /* By how much parameter j changes with i along the least sums, if all are known to be within about their ranges. */
@@ -179,53 +175,47 @@ static double slope_of_least(const fitting *self, size_t j, size_t i) {
   return common / own;
 }
 
-/* The nearest point of the box. */
-static void keep_inside(const strut_fit_layout *layout, double *parameters) {
-  for (size_t j = 0; j < layout->parameters; j++)
-    parameters[j] = fmin(fmax(parameters[j], layout->low[j]), layout->high[j]);
+/* How far an end of the interval of parameter i is from the best, by the derivatives. */
+static double half_of(const fitting *self, size_t i) {
+  return sqrt(self->rise * self->spectrum.covariance[i * self->layout->parameters + i]);
+}
+
+/* Goes on by steps of each parameter, within the box. */
+static void step_by(const fitting *self, const double *step, place *to) {
+  for (size_t j = 0; j < self->layout->parameters; j++)
+    to->at[j] = fmin(fmax(to->at[j] + step[j], self->layout->low[j]), self->layout->high[j]);
 }
 
 /*
  * The least sum where one parameter is held at a value. The others begin on the line of least sums; where that does not
  * converge at the best fit, too, and again where the sum is least so far.
  */
-static strut_status fit_held(const fitting *self, strut_fit_case *one, size_t i, double value,
-                             double *parameters, strut_fit_solution *solution) {
-  size_t n = self->layout->parameters;
-  strut_fit_solution latest;
-  double at[STRUT_LEAST_SQUARES_MOST];
-  strut_status status = STRUT_OK;
-  for (int try = 0; try < 3 && !status && (!try || solution->end != STRUT_FIT_CONVERGED); try++) {
-    double away = try == 0 ? value - self->best[i] : 0.0;
-    for (size_t j = 0; j < n; j++)
-      at[j] = try == 2 ? parameters[j] : self->best[j] + away * slope_of_least(self, j, i);
-    keep_inside(self->layout, at);
-    at[i] = value;
-    status = solve(one, (int32_t)i, 0, at, &latest);
-    if (try && !(latest.sum <= solution->sum)) continue;
-    *solution = latest;
-    memcpy(parameters, at, n * sizeof *parameters);
+static void fit_held(const fitting *self, strut_fit_case *one, size_t i, double value, place *to) {
+  double step[STRUT_LEAST_SQUARES_MOST] = {0.0};
+  for (int try = 0; try < 3 && !one->status && (!try || to->is.end != STRUT_FIT_CONVERGED); try++) {
+    place next = try == 2 ? *to : self->best;
+    for (size_t j = 0; j < self->layout->parameters; j++)
+      step[j] = try ? 0.0 : (value - self->best.at[i]) * slope_of_least(self, j, i);
+    step_by(self, step, &next);
+    next.at[i] = value;
+    solve(one, (int32_t)i, 0, &next);
+    if (!try || next.is.sum <= to->is.sum) *to = next;
   }
-  return status;
 }
 
 /*
  * An end of the profile of a parameter, on side -1 or 1: where the least sum has risen enough. Where it has not, or is
  * not known to be the least, there is no end.
  */
-static strut_status find_profile_end(const fitting *self, strut_fit_case *one, size_t i,
-                                     double side, double *parameters,
-                                     strut_fit_solution *solution) {
-  size_t n = self->layout->parameters;
-  double best = self->least;
+static void find_profile_end(const fitting *self, strut_fit_case *one, size_t i, double side,
+                             place *to) {
   double bound = side < 0.0 ? self->layout->low[i] : self->layout->high[i];
-  double most = fabs(bound - self->best[i]), inside = 0.0, outside = HUGE_VAL, height_inside = 0.0;
-  double distance = sqrt(self->rise * self->spectrum.covariance[i * n + i]);
-  strut_status status = STRUT_OK;
-  for (int k = 0; k < MOST_FITS && !status; k++) {
+  double most = fabs(bound - self->best.at[i]), inside = 0.0, outside = HUGE_VAL,
+         height_inside = 0.0, distance = half_of(self, i);
+  for (int k = 0; k < MOST_FITS && !one->status; k++) {
     distance = fmin(distance, most);
-    status = fit_held(self, one, i, self->best[i] + side * distance, parameters, solution);
-    double height = sqrt(fmax(0.0, (solution->sum - best) / self->rise)); /* 1: enough */
+    fit_held(self, one, i, self->best.at[i] + side * distance, to);
+    double height = sqrt(fmax(0.0, (to->is.sum - self->best.is.sum) / self->rise)); /* 1: enough */
     if (fabs(height - 1.0) < FOUND || (distance >= most && height < 1.0)) break;
     if (height > 1.0)
       outside = distance;
@@ -237,92 +227,83 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
     distance = between ? next : 0.5 * (inside + outside);
     if (!isfinite(distance)) distance = most;
   }
-  if (solution->sum - best < self->rise * (1.0 - 3.0 * FOUND))
-    solution->end = one->spent ? STRUT_FIT_SPENT : STRUT_FIT_STUCK;
-  return status;
+  if (to->is.sum - self->best.is.sum < self->rise * (1.0 - 3.0 * FOUND))
+    to->is.end = one->spent ? STRUT_FIT_SPENT : STRUT_FIT_STUCK;
 }
 
 /* Fits again from a place beside the best fit, as long as a few steps bring the sum within reach. */
-static strut_status fit_again(const fitting *self, strut_fit_case *one, double *parameters,
-                              strut_fit_solution *solution) {
+static void fit_again(const fitting *self, strut_fit_case *one, place *to) {
   static const int32_t steps[] = {FEW, STEPS_BESIDE, 0};
-  strut_status status = STRUT_OK;
-  for (int k = 0; k < 3 && !status; k++) {
-    status = solve(one, -1, steps[k], parameters, solution);
-    if (!(solution->sum < (k ? REACH : FAR * REACH) * self->least)) break;
+  for (int k = 0; k < 3 && !one->status; k++) {
+    solve(one, -1, steps[k], to);
+    if (!(to->is.sum < (k ? REACH : FAR * REACH) * self->best.is.sum)) break;
   }
-  return status;
 }
 
 /*
  * Walks over the range of parameter i, from the best fit to both sides and on from its other end, which of an angle is
- * the same, where the least sum over all others is within reach. Where it falls again another fit is near: the
- * parameters of the lowest such place, or false.
+ * the same, where the least sum over all others is within reach. Where it falls again another fit is near: the lowest
+ * such place, or false.
  */
-static bool walk(const fitting *self, strut_fit_case *one, size_t i, double *parameters) {
+static bool walk(const fitting *self, strut_fit_case *one, size_t i, place *to) {
   const strut_fit_layout *layout = self->layout;
-  size_t n = layout->parameters, bytes = n * sizeof *parameters;
   double pace = (layout->high[i] - layout->low[i]) / PACES, lowest = HUGE_VAL;
-  double now[STRUT_LEAST_SQUARES_MOST], next[STRUT_LEAST_SQUARES_MOST];
-  double reach = REACH * self->least;
-  strut_fit_solution latest;
-  if (pace * pace > FAR * reach * self->spectrum.covariance[i * n + i]) return false;
+  double reach = REACH * self->best.is.sum, step[STRUT_LEAST_SQUARES_MOST];
+  double variance = self->spectrum.covariance[i * layout->parameters + i];
+  if (pace * pace > FAR * reach * variance) return false;
   for (double side = -pace; side <= pace; side += 2.0 * pace) {
-    double step[STRUT_LEAST_SQUARES_MOST], peak = self->least;
-    memcpy(now, self->best, bytes);
-    for (size_t j = 0; j < n; j++) step[j] = side * slope_of_least(self, j, i);
+    place now = self->best;
+    double peak = now.is.sum;
+    for (size_t j = 0; j < layout->parameters; j++) step[j] = side * slope_of_least(self, j, i);
     for (int k = 1; k <= PACES; k++) {
-      for (size_t j = 0; j < n; j++) next[j] = now[j] + step[j];
-      keep_inside(layout, next);
-      if (next[i] == now[i]) next[i] = side < 0.0 ? layout->high[i] : layout->low[i];
-      if (solve(one, (int32_t)i, STEPS_BESIDE, next, &latest) || !(latest.sum < reach)) break;
-      for (size_t j = 0; j < n; j++) step[j] = j == i ? side : next[j] - now[j];
-      memcpy(now, next, bytes);
-      peak = fmax(peak, latest.sum);
-      if (peak - latest.sum < FALL * self->rise || latest.sum > lowest) continue;
-      lowest = latest.sum;
-      memcpy(parameters, next, bytes);
+      place next = now;
+      step_by(self, step, &next);
+      if (next.at[i] == now.at[i]) next.at[i] = side < 0.0 ? layout->high[i] : layout->low[i];
+      solve(one, (int32_t)i, STEPS_BESIDE, &next);
+      if (one->status || !(next.is.sum < reach)) break;
+      for (size_t j = 0; j < layout->parameters; j++)
+        step[j] = j == i ? side : next.at[j] - now.at[j];
+      now = next;
+      peak = fmax(peak, now.is.sum);
+      if (peak - now.is.sum < FALL * self->rise || now.is.sum > lowest) continue;
+      lowest = now.is.sum;
+      *to = now;
     }
   }
   return lowest < HUGE_VAL;
 }
 
 /* Has a fit those of the best one's parameters from `first` on, up to their intervals? */
-static bool is_best(const fitting *self, const double *parameters, size_t first) {
-  size_t n = self->layout->parameters;
+static bool is_best(const fitting *self, const place *found, size_t first) {
   bool same = true;
-  for (size_t i = first; i < n; i++)
-    same = same && fabs(parameters[i] - self->best[i]) <=
-                       sqrt(self->rise * self->spectrum.covariance[i * n + i]);
+  for (size_t i = first; i < self->layout->parameters; i++)
+    same = same && fabs(found->at[i] - self->best.at[i]) <= half_of(self, i);
   return same;
 }
 
 /* Another fit beside the best one: along a variable, or the least from the next best delays of a match. */
-static strut_status fit_beside(const fitting *self, strut_fit_case *one, size_t item,
-                               double *parameters, strut_fit_solution *solution) {
+static void fit_beside(const fitting *self, strut_fit_case *one, size_t item, place *to) {
   const strut_study_fit *fit = self->layout->fit;
-  size_t bytes = self->layout->parameters * sizeof *parameters;
-  double at[STRUT_LEAST_SQUARES_MOST], least = HUGE_VAL;
+  size_t first = self->layout->aligned_count;
   bool delay = item >= fit->variable_count;
   int32_t match = delay ? matches_delay(fit, item - fit->variable_count) : -1;
-  strut_fit_solution latest;
-  strut_status status = STRUT_OK;
-  memcpy(parameters, self->best, bytes);
-  for (int rank = 1, vain = 0; !status && vain < VAIN && (delay || rank == 1); rank++) {
-    memcpy(at, self->best, bytes);
-    if (delay ? !(strut_fit_place(one, true, match, (size_t)rank, at) < HUGE_VAL)
-              : !walk(self, one, self->layout->aligned_count + item, at))
+  double least = HUGE_VAL;
+  memcpy(to->at, self->best.at, sizeof to->at);
+  for (int rank = 1, vain = 0; !one->status && vain < VAIN && (delay || rank == 1); rank++) {
+    place next = self->best;
+    if (delay ? !(strut_fit_place(one, true, match, (size_t)rank, next.at) < HUGE_VAL)
+              : !walk(self, one, first + item, &next))
       break;
-    status = fit_again(self, one, at, &latest);
-    vain = latest.sum < REACH * self->least ? 0 : vain + 1;
-    bool values = is_best(self, at, self->layout->aligned_count);
-    double sum = latest.sum + (values ? HANDICAP * self->rise : 0.0);
-    if (!(sum < least) || is_best(self, at, 0)) continue;
-    least = sum, *solution = latest;
-    memcpy(parameters, at, bytes);
+    fit_again(self, one, &next);
+    vain = next.is.sum < REACH * self->best.is.sum ? 0 : vain + 1;
+    double sum = next.is.sum + (is_best(self, &next, first) ? HANDICAP * self->rise : 0.0);
+    if (!(sum < least) || is_best(self, &next, 0)) continue;
+    least = sum;
+    *to = next;
   }
-  return status;
 }
+
+/* ---- rows ---- */
 
 /* What row is which fit. */
 typedef struct row_kind {
@@ -332,92 +313,79 @@ typedef struct row_kind {
 } row_kind;
 
 static row_kind kind_of(const strut_study_fit *fit, int64_t row) {
-  size_t i = (size_t)row, starts = (size_t)fit->starts, variables = fit->variable_count;
-  size_t all_beside = STRUT_FIT_ROUNDS * fit->beside_count;
-  if (i < starts) return (row_kind){START, i, ""};
-  i -= starts;
-  size_t along = i < all_beside ? i % fit->beside_count : variables;
-  if (along < variables) return (row_kind){BESIDE, along, fit->variables[along].name};
-  if (i < all_beside)
-    return (row_kind){BESIDE, along, fit->matches[matches_delay(fit, along - variables)].name};
-  i -= all_beside;
-  if (i < 2 * variables) return (row_kind){i % 2 ? HIGH : LOW, i / 2, fit->variables[i / 2].name};
-  i -= 2 * variables;
-  return (row_kind){WITHOUT, i, fit->matches[i].name};
-}
-
-static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind what,
-                            double *parameters, strut_fit_solution *solution) {
-  const strut_fit_layout *layout = self->layout;
-  *solution = (strut_fit_solution){.end = STRUT_FIT_NONE, .sum = (double)NAN};
-  if (what.kind == START) return fit_start(one, (int64_t)what.item, parameters, solution);
-  if (what.kind == BESIDE) return fit_beside(self, one, what.item, parameters, solution);
-  if (what.kind != WITHOUT)
-    return find_profile_end(self, one, layout->aligned_count + what.item,
-                            what.kind == LOW ? -1.0 : 1.0, parameters, solution);
-  strut_fit_choose(one, 1.0, (int32_t)what.item);
-  memcpy(parameters, self->best, layout->parameters * sizeof *parameters);
-  return one->used < layout->parameters ? STRUT_OK : solve(one, -1, 0, parameters, solution);
-}
-
-/* ---- rows ---- */
-
-/* The cells of a row: axes, words, numbers, alignments. */
-static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
-                     const strut_fit_case *one, const double *parameters,
-                     const strut_fit_solution *solution) {
-  const strut_fit_layout *layout = self->layout;
-  strut_row_buffer *cells = &job->cells;
-  row_kind what = kind_of(layout->fit, point);
-  strut_fit_fill_values(layout, point, parameters, cells->values);
-  strut_sweep_axes(layout->plan, cells->values, cells);
-  strut_sweep_word(cells, kinds[what.kind]);
-  strut_sweep_word(cells, what.name);
-  strut_sweep_word(cells, strut_fit_ends[solution->end]);
-  strut_sweep_number(cells, solution->sum);
-  strut_sweep_number(cells, (double)one->used);
-  strut_sweep_number(cells, (double)one->evaluations);
-  for (size_t i = 0; i < layout->aligned_count; i++)
-    strut_sweep_number(cells, strut_fit_value(layout, i, parameters[i]));
-  strut_sweep_end_row(cells, STRUT_OK, solution->end == STRUT_FIT_FAILED ? &one->error : NULL);
+  size_t variables = fit->variable_count, i = (size_t)row, stage = 0;
+  const size_t counts[] = {(size_t)fit->starts, STRUT_FIT_ROUNDS * fit->beside_count, 2 * variables,
+                           fit->omission_count};
+  while (i >= counts[stage]) i -= counts[stage++];
+  if (stage == 0) return (row_kind){START, i, ""};
+  if (stage == 2) return (row_kind){i % 2 ? HIGH : LOW, i / 2, fit->variables[i / 2].name};
+  if (stage == 3) return (row_kind){WITHOUT, i, fit->matches[i].name};
+  i %= fit->beside_count;
+  return (row_kind){BESIDE, i,
+                    i < variables ? fit->variables[i].name
+                                  : fit->matches[matches_delay(fit, i - variables)].name};
 }
 
 static bool is_lost(const fitting *self) {
-  return self->layout->noise_known && self->least > LOST * fmax(self->result->freedom, 1.0);
+  return self->layout->noise_known && self->best.is.sum > LOST * fmax(self->result->freedom, 1.0);
+}
+
+static void fit_row(const fitting *self, strut_fit_case *one, row_kind what, place *to) {
+  if (what.kind == START) one->budget = OF_START;
+  if (what.kind == BESIDE && is_lost(self)) one->budget = OF_LOST;
+  if (what.kind == START) {
+    fit_start(one, (int64_t)what.item, to);
+  } else if (what.kind == BESIDE) {
+    fit_beside(self, one, what.item, to);
+  } else if (what.kind != WITHOUT) {
+    find_profile_end(self, one, self->layout->aligned_count + what.item,
+                     what.kind == LOW ? -1.0 : 1.0, to);
+  } else {
+    strut_fit_choose(one, 1.0, (int32_t)what.item);
+    memcpy(to->at, self->best.at, sizeof to->at);
+    if (one->used >= self->layout->parameters) solve(one, -1, 0, to);
+  }
+  if (one->spent && to->is.end == STRUT_FIT_NONE) to->is.end = STRUT_FIT_SPENT;
 }
 
 static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
   const fitting *self = context;
+  const strut_fit_layout *layout = self->layout;
+  strut_row_buffer *cells = &job->cells;
   strut_fit_case one;
-  strut_fit_solution solution;
-  double parameters[STRUT_LEAST_SQUARES_MOST];
+  place found = {.is = {STRUT_FIT_NONE, (double)NAN}};
+  row_kind what = kind_of(layout->fit, point);
   job->point = point;
-  job->cells.number_count = job->cells.word_count = 0;
-  job->cells.message[0] = '\0';
+  cells->number_count = cells->word_count = 0;
+  cells->message[0] = '\0';
   job->warning_count = 0;
-  job->status = strut_fit_case_create(self->layout, &one) ? STRUT_OK : STRUT_NO_MEMORY;
-  row_kind what = kind_of(self->layout->fit, point);
-  if (what.kind == START) one.budget = OF_START;
-  if (what.kind == BESIDE && is_lost(self)) one.budget = OF_LOST;
-  if (!job->status) job->status = fit_row(self, &one, what, parameters, &solution);
-  if (one.spent && solution.end == STRUT_FIT_NONE) solution.end = STRUT_FIT_SPENT;
-  if (!job->status) job->status = one.status, job->error = one.error;
-  if (!job->status) fill_row(self, job, point, &one, parameters, &solution);
+  if (!strut_fit_case_create(layout, &one)) one.status = strut_no_memory(&one.error, "");
+  if (!one.status) fit_row(self, &one, what, &found);
+  job->status = one.status, job->error = one.error;
+  if (!job->status) {
+    strut_fit_fill_values(layout, point, found.at, cells->values);
+    strut_sweep_axes(layout->plan, cells->values, cells);
+    strut_sweep_word(cells, kinds[what.kind]);
+    strut_sweep_word(cells, what.name);
+    strut_sweep_word(cells, strut_fit_ends[found.is.end]);
+    strut_sweep_number(cells, found.is.sum);
+    strut_sweep_number(cells, (double)one.used);
+    strut_sweep_number(cells, (double)one.evaluations);
+    for (size_t i = 0; i < layout->aligned_count; i++)
+      strut_sweep_number(cells, strut_fit_value(layout, i, found.at[i]));
+    strut_sweep_end_row(cells, STRUT_OK, found.is.end == STRUT_FIT_FAILED ? &one.error : NULL);
+  }
   strut_arena_free(&one.arena);
 }
 
-/* Reads a row back; one that was not needed is empty. False: memory is out. */
-static bool read_row(const fitting *self, int64_t point, strut_fit_row *row) {
+/* Reads a row back; one that was not needed is empty. */
+static void read_row(const fitting *self, int64_t point, strut_fit_row *row) {
   const strut_fit_layout *layout = self->layout;
   const strut_sweep_plan *plan = layout->plan;
   strut_result_slot slot;
-  size_t n = layout->parameters;
   *row = (strut_fit_row){.end = STRUT_FIT_NONE, .sum = (double)NAN};
-  row->parameters = strut_arena_allocate(&self->result->arena, 2 * n, sizeof(double));
-  if (!row->parameters) return false;
-  row->values = row->parameters + n;
-  for (size_t i = 0; i < n; i++) row->values[i] = (double)NAN;
-  if (!strut_slots_get(self->points.slots, point, &slot)) return true;
+  for (size_t i = 0; i < layout->parameters; i++) row->values[i] = (double)NAN;
+  if (!strut_slots_get(self->points.slots, point, &slot)) return;
   size_t first = plan->axis_columns, own = strut_slot_place(plan->columns, layout->fit->column);
   const double *numbers = slot.numbers + strut_slot_place(plan->columns, first + WORDS);
   const char *end = slot.words[strut_slot_place(plan->columns, first + END)];
@@ -425,12 +393,9 @@ static bool read_row(const fitting *self, int64_t point, strut_fit_row *row) {
     if (strcmp(end, strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
   row->sum = numbers[SUM];
   row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < layout->parameters; i++)
     row->values[i] = i < layout->aligned_count ? numbers[NUMBERS + i]
                                                : slot.numbers[own + i - layout->aligned_count];
-    row->parameters[i] = strut_fit_parameter(layout, i, row->values[i]);
-  }
-  return true;
 }
 
 strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_fit_refusal *refusal,
@@ -472,121 +437,133 @@ static strut_status run_stage(fitting *self, size_t first, size_t count, bool ne
   self->first = (int64_t)first, self->count = (int64_t)count;
   strut_status status = needed ? strut_points_complete(&self->points, count_rows) : STRUT_OK;
   for (size_t i = first; i < first + count && !status; i++)
-    if (!read_row(self, (int64_t)i, &self->result->starts[i]))
-      status = strut_no_memory(self->points.error, "");
+    read_row(self, (int64_t)i, &self->result->starts[i]);
   return status;
 }
 
 /* ---- what the best fit says ---- */
 
-static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
+/* Derivatives there, all numbers, and how coarse their times are. False: the model cannot be computed beside it. */
+static bool describe_best(fitting *self, strut_fit_case *one, double *residual, double *predicted,
+                          double *jacobian) {
   const strut_fit_layout *layout = self->layout;
   strut_fit_result *result = self->result;
-  size_t n = layout->parameters;
-  double *jacobian = strut_arena_allocate(&one->arena, layout->count * n + 1, sizeof *jacobian);
-  if (!jacobian || !STRUT_ALLOCATE(&result->arena, STRUT_NEW(result->residual, layout->count),
-                                   STRUT_NEW(result->predicted, layout->count)))
-    return strut_no_memory(self->points.error, "");
   strut_least_squares problem = strut_fit_problem(one);
-  bool fine =
-      strut_least_squares_jacobian(&problem, self->best, result->residual, jacobian) &&
-      strut_fit_spectrum_find(jacobian, layout->count, n, &result->arena, &self->spectrum) &&
-      problem.residuals(one, self->best, result->residual);
-  if (fine) strut_fit_align_all(one, self->best, result->predicted);
-  if (fine)
-    result->coarse = strut_fit_find_coarse(one, self->best, result->predicted, &result->coarseness);
-  if (one->status) return strut_fail(self->points.error, one->status, "%s", one->error.message);
-  return fine ? STRUT_OK
-              : strut_fail(self->points.error, STRUT_DIVERGED,
-                           "the model cannot be computed beside the best fit");
+  if (!strut_least_squares_jacobian(&problem, self->best.at, residual, jacobian) ||
+      !strut_fit_spectrum_find(jacobian, layout->count, layout->parameters, &result->arena,
+                               &self->spectrum) ||
+      !problem.residuals(one, self->best.at, residual))
+    return false;
+  strut_fit_align_all(one, self->best.at, predicted);
+  result->coarse = strut_fit_find_coarse(one, self->best.at, predicted, &result->coarseness);
+  for (size_t k = 0; k < layout->count; k++)
+    result->numbers[k].predicted = predicted[k], result->numbers[k].residual = residual[k];
+  return true;
 }
 
-/* Why there are no residuals at the first start. */
-static strut_status find_failure(fitting *self, strut_fit_case *one) {
+/* Describes the best fit, or says why there are no residuals at the first start. */
+static strut_status describe(fitting *self, strut_fit_case *one) {
   strut_fit_result *result = self->result;
-  double at[STRUT_LEAST_SQUARES_MOST];
-  double *residual = strut_arena_allocate(&one->arena, self->layout->count, sizeof *residual);
-  strut_least_squares problem = strut_fit_problem(one);
+  strut_error *error = self->points.error;
+  double *residual, *predicted, *jacobian, at[STRUT_LEAST_SQUARES_MOST];
+  size_t count = result->number_count = self->layout->count;
+  if (!STRUT_ALLOCATE(&one->arena, STRUT_NEW(residual, count), STRUT_NEW(predicted, count),
+                      STRUT_NEW(jacobian, count * self->layout->parameters + 1)) ||
+      !(result->numbers = strut_arena_copy(&result->arena, self->layout->numbers, count,
+                                           sizeof *result->numbers)))
+    return strut_no_memory(error, "");
+  if (result->found) {
+    bool fine = describe_best(self, one, residual, predicted, jacobian);
+    if (one->status) return strut_fail(error, one->status, "%s", one->error.message);
+    return fine ? STRUT_OK
+                : strut_fail(error, STRUT_DIVERGED,
+                             "the model cannot be computed beside the best fit");
+  }
   strut_fit_choose_start(self->layout, 0, at);
-  if (residual) problem.residuals(one, at, residual);
+  strut_fit_problem(one).residuals(one, at, residual);
   result->missing = one->missing;
   result->reason = strut_arena_format(&result->arena, "%s", one->error.message);
-  return residual && result->reason ? STRUT_OK : strut_no_memory(self->points.error, "");
+  return result->reason ? STRUT_OK : strut_no_memory(error, "");
 }
 
-/* The best fit so far, its scale of errors, and the rise of the sum at the ends of intervals. */
+/* The best of the first `count` fits, its scale of errors, and the rise of the sum at the ends of intervals. */
 static strut_status find_best(fitting *self, size_t count) {
+  const strut_fit_layout *layout = self->layout;
   strut_fit_result *result = self->result;
+  size_t before = result->found ? result->best : SIZE_MAX;
   strut_fit_case one;
   for (size_t i = 0; i < count; i++) {
-    double least = result->found ? self->least : HUGE_VAL;
+    double least = result->found ? self->best.is.sum : HUGE_VAL;
     if (i >= result->start_count) least -= FALL * self->rise;
     const strut_fit_row *row = &result->starts[i];
     if (row->end == STRUT_FIT_FAILED || !isfinite(row->sum) || !(row->sum < least)) continue;
-    result->best = i, result->found = true, self->least = row->sum;
+    result->best = i, result->found = true, self->best.is.sum = row->sum;
   }
   const strut_fit_row *best = &result->starts[result->best];
-  if (self->best == best->parameters) return STRUT_OK;
+  if (result->best == before || (!result->found && count > result->start_count)) return STRUT_OK;
   double freedom = (double)best->used - (double)result->parameters, variance = HUGE_VAL, t = 1.0;
   if (freedom > 0.0) {
     t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, freedom);
     variance = fmax(best->sum / freedom, STRUT_FIT_EXACT * STRUT_FIT_EXACT);
   }
-  bool known = self->layout->noise_known;
-  self->best = best->parameters;
-  self->rise = known ? gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0) : t * t * variance;
+  for (size_t i = 0; i < layout->parameters; i++)
+    self->best.at[i] = strut_fit_parameter(layout, i, best->values[i]);
+  self->rise = layout->noise_known ? gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0) : t * t * variance;
   result->freedom = freedom;
-  result->scale = known ? 1.0 : sqrt(variance);
-  strut_status status = !strut_fit_case_create(self->layout, &one)
-                            ? strut_no_memory(self->points.error, "")
-                        : result->found ? find_spectrum(self, &one)
-                                        : find_failure(self, &one);
+  result->scale = layout->noise_known ? 1.0 : sqrt(variance);
+  strut_status status = strut_fit_case_create(layout, &one)
+                            ? describe(self, &one)
+                            : strut_no_memory(self->points.error, "");
   strut_arena_free(&one.arena);
   return status;
 }
 
-/* Values, errors and intervals of all parameters. */
-static bool fill_estimates(fitting *self) {
+/* Value, error and interval of a parameter. */
+static void fill_estimate(fitting *self, size_t i) {
   const strut_fit_layout *layout = self->layout;
   strut_fit_result *result = self->result;
+  const strut_fit_unknown *of = &layout->unknowns[i];
   size_t n = layout->parameters, first = layout->aligned_count;
   const double *covariance = self->spectrum.covariance;
-  if (!STRUT_ALLOCATE(
-          &result->arena, STRUT_NEW(result->estimates, n),
-          STRUT_NEW(result->correlation, result->variable_count * result->variable_count)))
-    return false;
-  double half = sqrt(self->rise);
-  for (size_t i = 0; i < n; i++) {
-    double slope = fabs(strut_fit_slope(layout, i, self->best[i]));
-    double error = sqrt(covariance[i * n + i]), value = strut_fit_value(layout, i, self->best[i]);
-    strut_fit_estimate *estimate = &result->estimates[i];
-    const strut_fit_unknown *of = &layout->unknowns[i];
-    *estimate = (strut_fit_estimate){.name = strut_arena_format(&result->arena, "%s", of->name),
-                                     .unit = strut_arena_format(&result->arena, "%s", of->unit),
-                                     .value = value,
-                                     .also = (double)NAN,
-                                     .error = slope * error * result->scale,
-                                     .verdict = STRUT_FIT_IDENTIFIED};
-    estimate->low = estimate->linear_low = value - slope * error * half;
-    estimate->high = estimate->linear_high = value + slope * error * half;
-    double from = strut_fit_value(layout, i, layout->low[i]);
-    if (!(estimate->error < strut_fit_value(layout, i, layout->high[i]) - from))
-      estimate->error = HUGE_VAL;
-    for (size_t j = first; j < n && i >= first; j++)
-      result->correlation[(i - first) * result->variable_count + j - first] =
-          covariance[i * n + j] / (error * sqrt(covariance[j * n + j]));
-    for (size_t side = 0; side < 2 && i >= first; side++) {
-      const strut_fit_row *end = &result->ends[2 * (i - first) + side];
-      *(side ? &estimate->high : &estimate->low) =
-          end->end == STRUT_FIT_CONVERGED ? end->values[i] : (double)NAN;
-    }
-    if (!isfinite(estimate->low + estimate->high + estimate->error))
-      estimate->verdict = STRUT_FIT_UNDETERMINED;
-    estimate->at_bound = i >= first && fmin(self->best[i] - layout->low[i],
-                                            layout->high[i] - self->best[i]) < AT_BOUND;
-    if (estimate->at_bound) estimate->verdict = STRUT_FIT_BOUND;
+  double at = self->best.at[i], slope = fabs(strut_fit_slope(layout, i, at));
+  double error = sqrt(covariance[i * n + i]), value = strut_fit_value(layout, i, at);
+  double half = slope * error * sqrt(self->rise);
+  double range =
+      strut_fit_value(layout, i, layout->high[i]) - strut_fit_value(layout, i, layout->low[i]);
+  strut_fit_estimate *estimate = &result->estimates[i];
+  *estimate = (strut_fit_estimate){.name = strut_arena_format(&result->arena, "%s", of->name),
+                                   .unit = strut_arena_format(&result->arena, "%s", of->unit),
+                                   .value = value,
+                                   .also = (double)NAN,
+                                   .error = slope * error * result->scale,
+                                   .low = value - half,
+                                   .high = value + half,
+                                   .linear_low = value - half,
+                                   .linear_high = value + half,
+                                   .verdict = STRUT_FIT_IDENTIFIED};
+  if (!(estimate->error < range)) estimate->error = HUGE_VAL;
+  for (size_t j = first; j < n && i >= first; j++)
+    result->correlation[(i - first) * result->variable_count + j - first] =
+        covariance[i * n + j] / (error * sqrt(covariance[j * n + j]));
+  for (size_t side = 0; side < 2 && i >= first; side++) {
+    const strut_fit_row *end = &result->ends[2 * (i - first) + side];
+    *(side ? &estimate->high : &estimate->low) =
+        end->end == STRUT_FIT_CONVERGED ? end->values[i] : (double)NAN;
   }
-  return true;
+  if (!isfinite(estimate->low + estimate->high + estimate->error))
+    estimate->verdict = STRUT_FIT_UNDETERMINED;
+  estimate->at_bound = i >= first && fmin(at - layout->low[i], layout->high[i] - at) < AT_BOUND;
+  if (estimate->at_bound) estimate->verdict = STRUT_FIT_BOUND;
+  if (!estimate->name || !estimate->unit) result->out_of_memory = true;
+}
+
+static void fill_estimates(fitting *self) {
+  strut_fit_result *result = self->result;
+  size_t n = self->layout->parameters, variables = result->variable_count;
+  result->out_of_memory = !STRUT_ALLOCATE(&result->arena, STRUT_NEW(result->estimates, n),
+                                          STRUT_NEW(result->correlation, variables * variables));
+  for (size_t i = 0; i < n && !result->out_of_memory; i++) fill_estimate(self, i);
+  if (!result->out_of_memory) strut_fit_judge(self->layout, &self->spectrum, result);
 }
 
 /* ---- all of it ---- */
@@ -611,12 +588,12 @@ static strut_status run_stages(fitting *self) {
     if (!status) status = find_best(self, all + beside);
     result->settled = result->best == best;
   }
-  bool fine = status || !result->found || strut_fit_find_flaw(self->layout, result);
-  if (!status && fine) status = run_stage(self, ends, profiles, result->found && !*result->reason);
+  if (!status && result->found) strut_fit_find_flaw(self->layout, result);
+  bool holds = !status && result->found && !result->out_of_memory && !*result->reason;
+  if (!status) status = run_stage(self, ends, profiles, holds);
   if (!status) status = run_stage(self, ends + profiles, fit->omission_count, result->found);
-  if (!status && fine && result->found)
-    fine = fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result);
-  return fine ? status : strut_no_memory(self->points.error, "");
+  if (!status && result->found && !result->out_of_memory) fill_estimates(self);
+  return result->out_of_memory ? strut_no_memory(self->points.error, "") : status;
 }
 
 strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,

@@ -46,10 +46,19 @@ typedef struct strut_fit_row {
   strut_fit_end end;
   double sum; /* of squared residuals */
   int64_t used, evaluations;
-  double *parameters; /* (parameters) of the problem */
-  double *values;     /* (parameters) of them, SI */
-  bool agrees;        /* with the best */
+  double values[STRUT_LEAST_SQUARES_MOST]; /* (parameters) SI */
+  bool agrees;                             /* with the best */
 } strut_fit_row;
+
+/** A number of a match. */
+typedef struct strut_fit_number {
+  const strut_fit_match *match;
+  const strut_fit_series *series;
+  double at;                  /* time or displacement; NAN: it has none */
+  double measured;            /* NAN: a gap */
+  double factor;              /* of its residual */
+  double predicted, residual; /* at the best fit: aligned; weighted, 0 at gaps */
+} strut_fit_number;
 
 /** Residuals of a match, at the best fit. */
 typedef struct strut_fit_residuals {
@@ -82,9 +91,10 @@ typedef struct strut_fit_result {
   strut_fit_estimate *estimates; /* (parameters) alignments first */
   double *correlation;           /* (variables, variables) */
   size_t direction_count;
-  strut_fit_direction *directions;         /* that the numbers do not determine */
-  strut_fit_residuals *residuals;          /* (matches) */
-  double *residual, *predicted;            /* (numbers) at the best, aligned; residuals 0 at gaps */
+  strut_fit_direction *directions; /* that the numbers do not determine */
+  strut_fit_residuals *residuals;  /* (matches) */
+  size_t number_count;
+  strut_fit_number *numbers;               /* (number_count) */
   size_t agreeing;                         /* starts that agree with the best */
   double chi_square, freedom, probability; /* of a sum so large; NAN: the noise is not known */
   double scale;                  /* by which standard errors of unit noise are multiplied */
@@ -92,6 +102,7 @@ typedef struct strut_fit_result {
   double coarseness;             /* 0: not at all */
   const char *reason; /* why the model does not explain the data or starts disagree; or "" */
   const strut_fit_series *missing; /* the model has no such number: nothing is found; or NULL */
+  bool out_of_memory;
   strut_arena arena;
 } strut_fit_result;
 

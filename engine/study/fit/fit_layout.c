@@ -60,6 +60,7 @@ static const char *find_flaw(const strut_fit_layout *layout, size_t m, size_t s,
 static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut_setup *setup,
                                  strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
+  bool moves = match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST;
   strut_fit_source *sources;
   strut_column *places;
   if (!STRUT_ALLOCATE(&layout->arena, STRUT_NEW(sources, match->series_count),
@@ -67,19 +68,15 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     return strut_no_memory(error, "");
   layout->parts[m].sources = sources;
   for (size_t s = 0; s < match->series_count; s++) {
-    const strut_fit_series *series = &match->series[s];
-    bool moves = match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST;
-    int64_t column = find_number(&layout->parts[m].table, series->of);
-    const char *flaw = find_flaw(layout, m, s, setup, column);
+    const char *of = match->series[s].of;
+    sources[s] = (strut_fit_source){-1, -1, find_number(&layout->parts[m].table, of)};
+    const char *flaw = find_flaw(layout, m, s, setup, sources[s].column);
     if (flaw) return refuse(layout, m, s, flaw, error);
-    sources[s] = (strut_fit_source){-1, -1, (size_t)column};
-    if (moves)
-      sources[s].axis = axis_of(strut_fit_quantity(&setup->experiment, series->of), &places[s]);
+    if (moves) sources[s].axis = axis_of(strut_fit_quantity(&setup->experiment, of), &places[s]);
     for (size_t k = 0; k < s && sources[s].axis >= 0; k++)
       if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
           places[k].item == places[s].item)
         sources[s].partner = (int32_t)k, sources[k].partner = (int32_t)s;
-    memcpy(layout->measured + series->first, series->measured, match->count * sizeof(double));
   }
   for (size_t s = 0; s < match->series_count && match->align.rotate; s++)
     if (sources[s].axis >= 0 && sources[s].partner < 0)
@@ -88,15 +85,26 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
   return STRUT_OK;
 }
 
-/* The range of the numbers of a match, which the size of its motions is taken for. */
-static double range_of(const strut_fit_match *match) {
+/* Lists the numbers of a match; returns their range, which the size of its motions is taken for. */
+static double list_numbers(strut_fit_layout *layout, size_t m) {
+  const strut_fit_match *match = &layout->fit->matches[m];
+  strut_fit_number *number = layout->numbers + match->series[0].first, *first = number;
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (size_t s = 0; s < match->series_count; s++)
-    for (size_t i = 0; i < match->count; i++) { /* comparisons leave out NANs */
-      least = fmin(least, match->series[s].measured[i]);
-      most = fmax(most, match->series[s].measured[i]);
+    for (size_t i = 0; i < match->count; i++, number++) { /* comparisons leave out NANs */
+      const strut_fit_series *series = &match->series[s];
+      const strut_data_column *of = series->column;
+      *number = (strut_fit_number){match, series, match->at ? match->at[i] : (double)NAN,
+                                   .measured = of ? of->values[i] : (double)NAN,
+                                   .factor = of && of->weights ? sqrt(of->weights[i]) : 1.0};
+      least = fmin(least, number->measured);
+      most = fmax(most, number->measured);
     }
-  return most > least ? most - least : fmax(fabs(most), 1e-12);
+  double range = most > least ? most - least : fmax(fabs(most), 1e-12);
+  layout->parts[m].noise = match->noise > 0.0 ? match->noise : range;
+  layout->noise_known = layout->noise_known && match->noise > 0.0;
+  while (first < number) first++->factor /= layout->parts[m].noise;
+  return range;
 }
 
 /*
@@ -112,31 +120,28 @@ static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns wha
   const double range[] = {HUGE_VAL, HUGE_VAL, STRUT_TAU, scale};
   double first = delay ? match->at[0] : 0.0, latest = fmax(own, STRUT_FIT_OWN_CLOCK * scale);
   double start = first < 0.0 || first > latest ? first : 0.0;
-  double from = start - range[what], to = fmax(start, first) + range[what];
-  const char *name =
-      strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
+  const char *name = strut_arena_format(&layout->arena, "%s.%s", match->name, names[what]);
   size_t i = layout->aligned_count++;
-  layout->unknowns[i] =
-      (strut_fit_unknown){name, units[what], NULL, m, what, {start, first}, scale};
-  layout->low[i] = 1.0 + from / scale;
-  layout->high[i] = 1.0 + to / scale;
+  layout->parts[m].aligned[what] = (int32_t)i;
+  layout->unknowns[i] = (strut_fit_unknown){name, units[what], NULL, what, {start, first}, scale};
+  layout->low[i] = 1.0 + (start - range[what]) / scale;
+  layout->high[i] = 1.0 + (fmax(start, first) + range[what]) / scale;
   return name != NULL;
 }
 
-/* `own`: the duration of the model's own run. */
-static bool add_alignments(strut_fit_layout *layout, size_t m, double own) {
+/* `own`: the duration of the model's own run; `range`: that of the numbers. */
+static bool add_alignments(strut_fit_layout *layout, size_t m, double own, double range) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  bool fine = true;
-  double range = range_of(match);
-  for (int axis = 0; axis < 2 && match->align.shift; axis++) {
-    bool there = false;
-    for (size_t s = 0; s < match->series_count; s++)
-      there = there || (layout->parts[m].sources[s].axis == axis && !match->series[s].empty);
-    if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, own, range) && fine;
+  const double scale[] = {range, range, 1.0, strut_fit_span(match)};
+  bool free[] = {false, false, match->align.rotate, match->align.delay}, fine = true;
+  for (size_t s = 0; s < match->series_count && match->align.shift; s++) {
+    int axis = layout->parts[m].sources[s].axis;
+    if (axis >= 0 && match->series[s].column) free[axis] = true;
   }
-  if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, own, 1.0) && fine;
-  if (match->align.delay)
-    fine = add_aligned(layout, m, STRUT_FIT_DELAY, own, strut_fit_span(match)) && fine;
+  for (int what = 0; what < STRUT_FIT_ALIGNS_COUNT; what++) {
+    layout->parts[m].aligned[what] = -1;
+    if (free[what]) fine = add_aligned(layout, m, (strut_fit_aligns)what, own, scale[what]) && fine;
+  }
   return fine;
 }
 
@@ -175,12 +180,10 @@ static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
   if (status) return status;
   double own = strut_experiment_span(&setup.experiment, &setup.scene).duration;
   for (size_t m = 0; m < layout->fit->match_count && !status; m++) {
-    const strut_fit_match *match = &layout->fit->matches[m];
     status = make_table(layout, m, error);
     if (!status) status = find_sources(layout, m, &setup, error);
-    if (!status && !add_alignments(layout, m, own)) status = strut_no_memory(error, "");
-    layout->parts[m].noise = match->noise > 0.0 ? match->noise : range_of(match);
-    layout->noise_known = layout->noise_known && match->noise > 0.0;
+    if (!status && !add_alignments(layout, m, own, list_numbers(layout, m)))
+      status = strut_no_memory(error, "");
   }
   strut_setup_free(&setup);
   return status;
@@ -211,7 +214,7 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
   if (!layout->standing ||
       !STRUT_ALLOCATE(&layout->arena, STRUT_NEW(layout->unknowns, all),
                       STRUT_NEW(layout->parts, fit->match_count),
-                      STRUT_NEW(layout->measured, layout->count), STRUT_NEW(layout->low, all),
+                      STRUT_NEW(layout->numbers, layout->count), STRUT_NEW(layout->low, all),
                       STRUT_NEW(layout->high, all)))
     return strut_no_memory(error, "");
   strut_status status = find_all(layout, error);

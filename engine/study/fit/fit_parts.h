@@ -30,7 +30,6 @@ typedef enum strut_fit_aligns {
 typedef struct strut_fit_unknown {
   const char *name, *unit;               /* "film.shift_x" */
   const strut_search_variable *variable; /* NULL: a number of an alignment, as follows */
-  size_t match;
   strut_fit_aligns what;
   double starts[2], scale; /* SI; the second of a start in four */
 } strut_fit_unknown;
@@ -39,15 +38,16 @@ typedef struct strut_fit_unknown {
 typedef struct strut_fit_source {
   int axis;        /* 0: x of a place, 1: y, -1: neither */
   int32_t partner; /* the series of the other coordinate of the same place, or -1 */
-  size_t column;   /* of a TABLE: its number among those of numbers */
+  int64_t column;  /* of a TABLE: its number among those of numbers */
 } strut_fit_source;
 
 /** What is known of a match. */
 typedef struct strut_fit_part {
-  strut_fit_source *sources; /* (series) */
-  strut_study study;         /* as given, with the match's `compute` */
-  strut_sweep_plan table;    /* of a TABLE */
-  double noise;              /* by which residuals are divided */
+  strut_fit_source *sources;               /* (series) */
+  strut_study study;                       /* as given, with the match's `compute` */
+  strut_sweep_plan table;                  /* of a TABLE */
+  double noise;                            /* by which residuals are divided */
+  int32_t aligned[STRUT_FIT_ALIGNS_COUNT]; /* parameters of the problem; -1: none */
 } strut_fit_part;
 
 /** What all evaluations have in common. Constant once made, but for its cache. */
@@ -58,7 +58,7 @@ typedef struct strut_fit_layout {
   size_t aligned_count, parameters;
   strut_fit_unknown *unknowns; /* (parameters) */
   strut_fit_part *parts;       /* (matches) */
-  double *measured;            /* (count) */
+  strut_fit_number *numbers;   /* (count) */
   bool noise_known;
   double *low, *high; /* (parameters) the box */
   strut_equilibrium_cache *standing;
@@ -82,6 +82,12 @@ typedef struct strut_fit_case {
   double *latest;      /* (parameters) of that */
   bool known;
   strut_study_value *values; /* of all columns of the axes */
+  /* of the match that is being predicted */
+  const strut_fit_match *match;
+  size_t index;
+  double align[STRUT_FIT_ALIGNS_COUNT];
+  double delay[2];   /* in which range it is to be found; both 0: it is known */
+  double from, to;   /* times of the samples from which it is found */
   double *placing;   /* parameters whose alignments are to be found while the model is predicted */
   bool delays;       /* with their delays */
   int32_t elsewhere; /* this match takes one of the next best, by its rank; -1: none does */
@@ -148,13 +154,13 @@ enum { STRUT_FIT_MOST_PLACES = 50 };
 /** Parameters (parameters) where a start begins: the first where the study says, the others spread evenly. */
 void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters);
 
-/* ---- fit_report.c ---- */
+/* ---- fit_report.c: the result notes where memory is out ---- */
 
 /**
  * Describes the residuals of the best fit, and gives as the reason why it does not explain the data, or "". A match of its
- * own has no more degrees of freedom than numbers. False: memory is out.
+ * own has no more degrees of freedom than numbers.
  */
-bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result);
-/** Fills what starts and spectrum say besides, and the verdict of each estimate. False: memory is out. */
-bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
+void strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result);
+/** Fills what starts and spectrum say besides, and the verdict of each estimate. */
+void strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      strut_fit_result *result);

@@ -5,63 +5,49 @@
 #include <string.h>
 
 #include "engine/study/fit/fit_parts.h"
-#include "engine/study/search/optimisers.h"
 
 /* Derivatives of everything, of which candidates take their part. */
 typedef struct planning {
   const strut_fit_layout *layout;
   strut_fit_plan *plan;
-  const double *jacobian; /* (count, parameters); rows of gaps are 0 */
-  double *part;           /* (count, parameters) of a candidate */
-  size_t rows, numbers;   /* of it */
+  double *jacobian; /* (count, parameters); rows of gaps are 0 */
+  double *part;     /* (count, parameters) of a candidate, the other rows 0 */
 } planning;
 
-/* Adds a series to the candidate. */
-static void take_series(planning *self, size_t m, size_t s) {
-  const strut_fit_match *match = &self->layout->fit->matches[m];
-  size_t n = self->layout->parameters;
-  memcpy(self->part + self->rows * n, self->jacobian + match->series[s].first * n,
-         match->count * n * sizeof(double));
-  self->rows += match->count;
-  for (size_t i = 0; i < match->count; i++)
-    if (!isnan(match->series[s].measured[i])) self->numbers++;
-}
-
-static void take_match(planning *self, size_t m) {
-  for (size_t s = 0; s < self->layout->fit->matches[m].series_count; s++) take_series(self, m, s);
-}
-
-/* Values the candidate, which is empty then: of all alignments those that it moves. */
-static bool add_candidate(planning *self, const char *name) {
+/* Values the numbers of two series, or all of a match, or all (NULL): with those alignments that they depend on. */
+static bool add_candidate(planning *self, const char *name, const strut_fit_match *match,
+                          const strut_fit_series *one, const strut_fit_series *other) {
   const strut_fit_layout *layout = self->layout;
   strut_fit_plan *plan = self->plan;
-  size_t n = layout->parameters, first = layout->aligned_count, rows = self->rows, kept = 0,
-         of[STRUT_LEAST_SQUARES_MOST];
+  size_t n = layout->parameters, first = layout->aligned_count, kept = n - first;
   strut_fit_spectrum spectrum;
-  for (size_t i = 0; i < n; i++) {
-    bool moves = i >= first;
-    for (size_t k = 0; k < rows && !moves; k++) moves = self->part[k * n + i] != 0.0;
-    if (moves) of[kept++] = i;
-  }
-  strut_fit_candidate *candidate = &plan->candidates[plan->count];
-  *candidate = (strut_fit_candidate){name, self->numbers, -HUGE_VAL, 0.0, NULL};
+  strut_fit_candidate *candidate = &plan->candidates[plan->count++];
+  *candidate = (strut_fit_candidate){.name = name, .determinant = -HUGE_VAL};
   candidate->errors = strut_arena_allocate(&plan->arena, plan->variable_count, sizeof(double));
   if (!candidate->errors || !name) return false;
-  plan->count++;
-  self->rows = self->numbers = 0;
-  for (size_t k = 0; k < plan->variable_count; k++) candidate->errors[k] = HUGE_VAL;
-  if (candidate->numbers < kept) return true;
-  for (size_t k = 0; k < rows; k++)
-    for (size_t i = 0; i < kept; i++) self->part[k * kept + i] = self->part[k * n + of[i]];
-  if (!strut_fit_spectrum_find(self->part, rows, kept, &plan->arena, &spectrum)) return false;
+  memset(self->part, 0, layout->count * n * sizeof *self->part);
+  for (size_t k = 0; k < layout->count; k++) {
+    const strut_fit_number *number = &layout->numbers[k];
+    if (one ? number->series != one && number->series != other : match && number->match != match)
+      continue;
+    memcpy(self->part + k * n, self->jacobian + k * n, n * sizeof *self->part);
+    if (!isnan(number->measured)) candidate->numbers++;
+  }
+  for (size_t i = 0; i < first; i++) {
+    bool moves = false;
+    for (size_t k = 0; k < layout->count; k++) moves = moves || self->part[k * n + i] != 0.0;
+    kept += moves;
+  }
+  if (!strut_fit_spectrum_find(self->part, layout->count, n, &plan->arena, &spectrum)) return false;
+  bool enough = candidate->numbers >= kept;
+  for (size_t k = first; k < n; k++)
+    candidate->errors[k - first] = enough ? sqrt(spectrum.covariance[k * n + k]) *
+                                                fabs(strut_fit_slope(layout, k, plan->at[k]))
+                                          : HUGE_VAL;
+  if (!enough) return true;
   candidate->least = spectrum.singular[kept - 1];
   candidate->determinant = 0.0;
   for (size_t i = 0; i < kept; i++) candidate->determinant += 2.0 * log10(spectrum.singular[i]);
-  for (size_t k = 0; k < plan->variable_count; k++) {
-    size_t i = kept - plan->variable_count + k;
-    candidate->errors[k] = sqrt(spectrum.covariance[i * kept + i]) *
-                           fabs(strut_fit_slope(layout, first + k, plan->at[first + k]));
-  }
   return true;
 }
 
@@ -75,22 +61,12 @@ static bool add_match(planning *self, size_t m) {
     const char *of = match->series[s].of, *dot = strrchr(of, '.');
     int length = (int)(partner >= 0 && dot ? dot - of : (int64_t)strlen(of));
     if (partner >= 0 && partner < (int32_t)s) continue;
-    take_series(self, m, s);
-    if (partner >= 0) take_series(self, m, (size_t)partner);
     fine = add_candidate(
-        self, strut_arena_format(&self->plan->arena, "%s: %.*s", match->name, length, of));
+        self, strut_arena_format(&self->plan->arena, "%s: %.*s", match->name, length, of), match,
+        &match->series[s], partner < 0 ? NULL : &match->series[partner]);
   }
-  if (self->plan->count - before < 2) return fine;
-  take_match(self, m);
-  return fine && add_candidate(self, match->name);
-}
-
-static bool add_all(planning *self) {
-  size_t matches = self->layout->fit->match_count;
-  bool fine = true;
-  for (size_t m = 0; m < matches && fine; m++) fine = add_match(self, m);
-  for (size_t m = 0; m < matches; m++) take_match(self, m);
-  return fine && (matches == 1 || add_candidate(self, "all"));
+  return fine &&
+         (self->plan->count - before < 2 || add_candidate(self, match->name, match, NULL, NULL));
 }
 
 /* The most certain first. */
@@ -102,12 +78,12 @@ static int by_worth(const void *a, const void *b) {
 }
 
 /* The derivatives at the first place in the ranges where the model can be computed. */
-static strut_status differentiate(const strut_fit_plan *plan, strut_fit_case *one, double *residual,
-                                  double *jacobian, strut_error *error) {
+static strut_status differentiate(const planning *self, strut_fit_case *one, strut_error *error) {
   strut_least_squares problem = strut_fit_problem(one);
   for (int k = 0; k < STRUT_FIT_MOST_PLACES && !one->status; k++) {
-    strut_fit_choose_start(one->layout, k, plan->at);
-    if (strut_least_squares_jacobian(&problem, plan->at, residual, jacobian)) return STRUT_OK;
+    strut_fit_choose_start(one->layout, k, self->plan->at);
+    if (strut_least_squares_jacobian(&problem, self->plan->at, self->part, self->jacobian))
+      return STRUT_OK;
   }
   return one->status ? strut_fail(error, one->status, "%s", one->error.message)
                      : strut_fail(error, STRUT_DIVERGED,
@@ -117,24 +93,22 @@ static strut_status differentiate(const strut_fit_plan *plan, strut_fit_case *on
 
 strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *interrupt,
                                  strut_fit_plan *plan, strut_error *error) {
+  const strut_study_fit *fit = of->study->fit;
   strut_fit_layout layout = {0};
   strut_fit_case one = {0};
   planning self = {.layout = &layout, .plan = plan};
-  double *jacobian, *residual;
-  *plan = (strut_fit_plan){.fit = of->study->fit, .variable_count = of->study->fit->variable_count};
+  *plan = (strut_fit_plan){.fit = fit, .variable_count = fit->variable_count};
   strut_status status = strut_fit_layout_make(of, interrupt, &layout, error);
-  size_t n = layout.parameters, most = 2;
-  for (size_t m = 0; m < plan->fit->match_count; m++)
-    most += 1 + plan->fit->matches[m].series_count;
-  if (!status &&
-      !(STRUT_ALLOCATE(&layout.arena, STRUT_NEW(jacobian, layout.count * n),
-                       STRUT_NEW(residual, layout.count), STRUT_NEW(self.part, layout.count * n)) &&
-        STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->candidates, most), STRUT_NEW(plan->at, n)) &&
-        strut_fit_case_create(&layout, &one)))
-    status = strut_no_memory(error, "");
-  if (!status) status = differentiate(plan, &one, residual, jacobian, error);
-  if (!status) self.jacobian = jacobian;
-  if (!status && !add_all(&self)) status = strut_no_memory(error, "");
+  size_t n = layout.parameters, most = 1 + fit->match_count;
+  for (size_t m = 0; m < fit->match_count; m++) most += fit->matches[m].series_count;
+  bool fine =
+      !status && STRUT_NUMBERS(&layout.arena, layout.count * n, &self.jacobian, &self.part) &&
+      STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->candidates, most), STRUT_NEW(plan->at, n)) &&
+      strut_fit_case_create(&layout, &one);
+  if (fine) status = differentiate(&self, &one, error);
+  for (size_t m = 0; m < fit->match_count && !status && fine; m++) fine = add_match(&self, m);
+  if (!status && fine && fit->match_count > 1) fine = add_candidate(&self, "all", NULL, NULL, NULL);
+  if (!status && !fine) status = strut_no_memory(error, "");
   if (!status) qsort(plan->candidates, plan->count, sizeof *plan->candidates, by_worth);
   strut_arena_free(&one.arena);
   strut_fit_layout_free(&layout);

@@ -52,17 +52,26 @@ static const double PART = 0.02, ERRORS = 2.0;
 /* A power this near to 1 is 1. */
 static const double WHOLE = 0.02;
 
+/* A text of the result, which remembers that memory is out, in printf's style; never NULL. */
+#define SAY(result, ...) keep_text(result, strut_arena_format(&(result)->arena, __VA_ARGS__))
+
+static const char *keep_text(strut_fit_result *result, const char *text) {
+  if (!text) result->out_of_memory = true;
+  return text ? text : "";
+}
+
 /* ---- residuals ---- */
 
 /* Correlation of successive residuals of a series, in its standard errors; NAN: too few. */
-static double find_lag(const double *residual, size_t count) {
+static double find_lag(const strut_fit_number *number, size_t count) {
   double sum = 0.0, square = 0.0, last = 0.0;
   size_t used = 0;
   for (size_t i = 0; i < count; i++) {
-    if (residual[i] == 0.0) continue; /* a gap */
-    sum += last * residual[i];
-    square += residual[i] * residual[i];
-    last = residual[i];
+    double residual = number[i].residual;
+    if (residual == 0.0) continue; /* a gap */
+    sum += last * residual;
+    square += residual * residual;
+    last = residual;
     used++;
   }
   return used > 10 ? sum / square * sqrt((double)used) : (double)NAN;
@@ -74,12 +83,12 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   double square = 0.0, lags = 0.0, series = 0.0;
   *of = (strut_fit_residuals){.match = match, .lag = (double)NAN};
   for (size_t s = 0; s < match->series_count; s++) {
-    const double *residual = result->residual + match->series[s].first;
-    double lag = match->kind == STRUT_FIT_MOTION ? find_lag(residual, match->count) : (double)NAN;
+    const strut_fit_number *number = &result->numbers[match->series[s].first];
+    double lag = match->kind == STRUT_FIT_MOTION ? find_lag(number, match->count) : (double)NAN;
     if (!isnan(lag)) lags += lag, series += 1.0;
     for (size_t i = 0; i < match->count; i++) {
-      square += residual[i] * residual[i];
-      of->used += residual[i] != 0.0;
+      square += number[i].residual * number[i].residual;
+      of->used += number[i].residual != 0.0;
     }
   }
   if (series > 0.0) of->lag = lags / sqrt(series);
@@ -87,57 +96,55 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   of->chi_square = layout->noise_known ? square : (double)NAN;
 }
 
-/* "; the model's numbers are 100 times those of 'x [cm]': check this unit", where a match has such numbers, or "". */
-static const char *doubt_unit(strut_fit_result *result, const strut_fit_match *match) {
+/* The flaw with "; the model's numbers are 100 times those of 'x [cm]': check this unit", where a match has such numbers. */
+static const char *doubt_unit(strut_fit_result *result, const strut_fit_match *match,
+                              const char *flaw) {
   const strut_data_column *column = match->series[0].column;
   double sums[2][3] = {{0.0}};
-  for (size_t i = 0; column && i < match->count; i++) {
-    const double pair[] = {column->values[i], result->predicted[match->series[0].first + i]};
+  for (size_t i = 0; column->name && i < match->count; i++) {
+    const double pair[] = {column->values[i],
+                           result->numbers[match->series[0].first + i].predicted};
     for (int k = 0; k < 2 && !isnan(pair[0]); k++)
       sums[k][0] += 1.0, sums[k][1] += pair[k], sums[k][2] += pair[k] * pair[k];
   }
   for (int k = 0; k < 2 && match->align.shift; k++)
     sums[k][2] -= sums[k][1] * sums[k][1] / fmax(sums[k][0], 1.0);
   double times = sqrt(sums[1][2] / sums[0][2]);
-  if (!column || !(fabs(log(times)) > log(MUCH))) return "";
-  return strut_arena_format(&result->arena,
-                            "; the model's numbers are %.2g times those of '%.40s [%.20s]': check "
-                            "this unit",
-                            times, column->name, column->unit);
+  if (!column->name || !(fabs(log(times)) > log(MUCH))) return flaw;
+  return SAY(result,
+             "%s; the model's numbers are %.2g times those of '%.40s [%.20s]': check this unit",
+             flaw, times, column->name, column->unit);
 }
 
-bool strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result) {
+void strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *result) {
   size_t matches = layout->fit->match_count;
   bool known = layout->noise_known;
   double sum = result->starts[result->best].sum;
   const char *flaw = "";
   result->residuals = strut_arena_allocate(&result->arena, matches, sizeof *result->residuals);
-  if (!result->residuals) return false;
+  if (!result->residuals) result->out_of_memory = true;
+  if (!result->residuals) return;
   for (size_t m = 0; m < matches; m++) describe_residuals(layout, m, result);
   result->chi_square = known ? sum : (double)NAN;
   result->probability =
       known && result->freedom > 0.0 ? gsl_cdf_chisq_Q(sum, result->freedom) : (double)NAN;
-  for (size_t m = 0; m <= matches && known && flaw && !*flaw; m++) {
+  for (size_t m = 0; m <= matches && known && !*flaw; m++) {
     const strut_fit_residuals *of = m ? &result->residuals[m - 1] : NULL;
     double square = of ? of->chi_square : sum, freedom = of ? (double)of->used : result->freedom;
     if (gsl_cdf_chisq_Q(square, fmax(freedom, 1.0)) < RARE)
-      flaw = strut_arena_format(&result->arena,
-                                "the residuals%s%.40s%s are %.3g times the noise: chi square %.4g "
-                                "with %.0f degrees of freedom",
-                                of ? " of '" : "", of ? of->match->name : "", of ? "'" : "",
-                                sqrt(square / freedom), square, freedom);
+      flaw = SAY(result,
+                 "the residuals%s%.40s%s are %.3g times the noise: chi square %.4g with %.0f "
+                 "degrees of freedom",
+                 of ? " of '" : "", of ? of->match->name : "", of ? "'" : "",
+                 sqrt(square / freedom), square, freedom);
   }
-  for (size_t m = 0; m < matches && flaw && !*flaw; m++)
+  for (size_t m = 0; m < matches && !*flaw; m++)
     if (fabs(result->residuals[m].lag) > CORRELATED && result->scale > STRUT_FIT_EXACT)
-      flaw = strut_arena_format(&result->arena,
-                                "successive residuals of '%.40s' are correlated, by %.3g standard "
-                                "errors",
-                                result->residuals[m].match->name, result->residuals[m].lag);
-  const char *doubt = "";
-  for (size_t m = 0; m < matches && flaw && *flaw && doubt && !*doubt; m++)
-    doubt = doubt_unit(result, &layout->fit->matches[m]);
-  result->reason = flaw && doubt ? strut_arena_format(&result->arena, "%s%s", flaw, doubt) : NULL;
-  return result->reason != NULL;
+      flaw = SAY(result, "successive residuals of '%.40s' are correlated, by %.3g standard errors",
+                 result->residuals[m].match->name, result->residuals[m].lag);
+  result->reason = flaw;
+  for (size_t m = 0; m < matches && *flaw && result->reason == flaw; m++)
+    result->reason = doubt_unit(result, &layout->fit->matches[m], flaw);
 }
 
 /* By how much the noise of a match is larger than its residuals, where it is too large for them; else 0. */
@@ -166,63 +173,55 @@ static const char *name_determined(const strut_fit_unknown *first, const strut_f
                                    double other, strut_fit_result *result) {
   const strut_search_variable *one = first->variable, *two = second->variable;
   if (!one || !two || !one->logarithmic || !two->logarithmic)
-    return strut_arena_format(&result->arena, "%.40s %c %.3g %.40s", first->name,
-                              other < 0.0 ? '-' : '+', fabs(other), second->name);
+    return SAY(result, "%.40s %c %.3g %.40s", first->name, other < 0.0 ? '-' : '+', fabs(other),
+               second->name);
   double power = other * log(one->to / one->from) / log(two->to / two->from);
   char text[40] = "";
   if (fabs(fabs(power) - 1.0) > WHOLE) snprintf(text, sizeof text, "^%.3g", fabs(power));
-  return strut_arena_format(&result->arena, "%.40s%c%.40s%s", first->name, power < 0.0 ? '/' : '*',
-                            second->name, text);
+  return SAY(result, "%.40s%c%.40s%s", first->name, power < 0.0 ? '/' : '*', second->name, text);
 }
 
 /*
- * "friction and damping together", and what of two is determined: the fitted ones that take part, then the
- * alignments. False: memory is out.
+ * A direction in which the numbers determine nothing: "friction and damping together", and what of two is determined.
+ * The fitted ones that take part come first, then the alignments.
  */
-static bool describe_direction(const strut_fit_layout *layout, const bool *takes,
-                               const double *part, strut_fit_result *result,
-                               strut_fit_direction *direction) {
-  strut_buffer text = {0};
-  size_t taken = 0, pair[2] = {0, 0};
-  for (size_t k = 0; k < result->parameters; k++) {
-    size_t i = (k + result->aligned_count) % result->parameters;
-    if (!takes[i]) continue;
-    strut_buffer_add(&text, "%s%s", taken ? " and " : "", result->estimates[i].name);
+static void describe_direction(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
+                               size_t k, double size, strut_fit_result *result) {
+  size_t n = spectrum->parameters, first = layout->aligned_count, taken = 0, pair[2] = {0, 0};
+  strut_fit_direction *direction = &result->directions[result->direction_count++];
+  double *part = strut_arena_allocate(&result->arena, n, sizeof *part);
+  const char *words = "";
+  if (!part) result->out_of_memory = true;
+  for (size_t j = first; j < first + n && part; j++) {
+    size_t i = j % n;
+    part[i] = spectrum->direction[k * n + i] / size;
+    if (!takes_part(spectrum, result->scale, k, i, size)) continue;
+    result->estimates[i].verdict = STRUT_FIT_UNDETERMINED;
+    words = SAY(result, "%s%s%s", words, taken ? " and " : "", layout->unknowns[i].name);
     if (taken < 2) pair[taken] = i;
     taken++;
   }
-  if (taken > 1) strut_buffer_add(&text, " together");
-  char *words = strut_buffer_take(&text);
-  direction->words = words ? strut_arena_text(&result->arena, words, strlen(words)) : NULL;
-  strut_release(words);
+  *direction = (strut_fit_direction){.part = part + first, .words = words};
+  direction->error = spectrum->singular[k] > 0.0 ? result->scale / spectrum->singular[k] : HUGE_VAL;
+  if (taken > 1) direction->words = SAY(result, "%s together", words);
   if (taken == 2)
     direction->determined = name_determined(&layout->unknowns[pair[0]], &layout->unknowns[pair[1]],
                                             -part[pair[0]] / part[pair[1]], result);
-  return direction->words && (taken != 2 || direction->determined);
 }
 
-/* Directions in which the numbers determine nothing, and who takes part in them. */
-static bool find_directions(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
+static void find_directions(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                             strut_fit_result *result) {
-  size_t n = spectrum->parameters, first = layout->aligned_count;
-  bool takes[STRUT_LEAST_SQUARES_MOST];
+  size_t n = spectrum->parameters;
   result->directions = strut_arena_allocate(&result->arena, n, sizeof *result->directions);
-  for (size_t k = 0; result->directions && k < n; k++) {
-    double error = spectrum->singular[k] > 0.0 ? result->scale / spectrum->singular[k] : HUGE_VAL;
-    double *part = strut_arena_allocate(&result->arena, n, sizeof *part), size = 0.0;
-    if (!part) return false;
-    for (size_t i = first; i < n; i++) size = hypot(size, spectrum->direction[k * n + i]);
-    if (!(error * size > WIDE) || !(size > PART)) continue;
-    for (size_t i = 0; i < n; i++) {
-      part[i] = spectrum->direction[k * n + i] / size;
-      takes[i] = takes_part(spectrum, result->scale, k, i, size);
-      if (takes[i]) result->estimates[i].verdict = STRUT_FIT_UNDETERMINED;
-    }
-    strut_fit_direction *direction = &result->directions[result->direction_count++];
-    *direction = (strut_fit_direction){.error = error, .part = part + first};
-    if (!describe_direction(layout, takes, part, result, direction)) return false;
+  if (!result->directions) result->out_of_memory = true;
+  for (size_t k = 0; k < n && !result->out_of_memory; k++) {
+    double size = 0.0;
+    for (size_t i = layout->aligned_count; i < n; i++)
+      size = hypot(size, spectrum->direction[k * n + i]);
+    bool wide =
+        !(spectrum->singular[k] > 0.0) || result->scale / spectrum->singular[k] * size > WIDE;
+    if (wide && size > PART) describe_direction(layout, spectrum, k, size, result);
   }
-  return result->directions != NULL;
 }
 
 /* ---- starts ---- */
@@ -287,7 +286,7 @@ static const char *compare_starts(const strut_fit_layout *layout, const char *fl
 
 /*
  * What the starts say of a flaw of the best fit: it may not be the model's where few of them, or none, end there, the
- * best fit has not converged, or lies where the parameters hardly matter. NULL: memory is out.
+ * best fit has not converged, or lies where the parameters hardly matter.
  */
 static const char *qualify_flaw(const char *flaw, strut_fit_result *result, bool *far) {
   size_t starts = result->start_count, least = starts < SEVERAL ? starts : SEVERAL;
@@ -298,49 +297,42 @@ static const char *qualify_flaw(const char *flaw, strut_fit_result *result, bool
     flat = flat && !isfinite(result->estimates[i].error);
   *far = few || flat || !ended;
   if (*far)
-    return strut_arena_format(&result->arena,
-                              "%s; %sstarts that end there: %zu of %zu: give more starts or "
-                              "narrower ranges",
-                              flaw,
-                              !ended ? "the method has not converged; "
-                              : flat ? "the parameters hardly matter there; "
-                                     : "",
-                              result->agreeing, starts);
-  return starts > 1
-             ? flaw
-             : strut_arena_format(&result->arena,
-                                  "%s; a single start does not show that none fits better", flaw);
+    return SAY(result,
+               "%s; %sstarts that end there: %zu of %zu: give more starts or narrower ranges", flaw,
+               !ended ? "the method has not converged; "
+               : flat ? "the parameters hardly matter there; "
+                      : "",
+               result->agreeing, starts);
+  return starts > 1 ? flaw
+                    : SAY(result, "%s; a single start does not show that none fits better", flaw);
 }
 
 /* ---- verdicts ---- */
 
-bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
+void strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      strut_fit_result *result) {
-  size_t first = layout->aligned_count;
   const char *flaw = result->reason;
   bool far = false;
-  if (!find_directions(layout, spectrum, result)) return false;
+  find_directions(layout, spectrum, result);
   result->reason = compare_starts(layout, flaw, result);
   if (*flaw) result->reason = qualify_flaw(flaw, result, &far);
   bool lone = result->agreeing < 2;
   bool coarse = !*flaw && result->coarseness > (lone ? ALIAS : COARSE);
   if (coarse)
-    result->reason = strut_arena_format(&result->arena,
-                                        "the motion changes much between the times of '%.40s', so "
-                                        "that others would do as well: measure it more often%s",
-                                        result->coarse->name, lone ? ", and give more starts" : "");
-  if (!result->reason) return false;
+    result->reason = SAY(result,
+                         "the motion changes much between the times of '%.40s', so that others "
+                         "would do as well: measure it more often%s",
+                         result->coarse->name, lone ? ", and give more starts" : "");
   strut_fit_verdict verdict = coarse          ? STRUT_FIT_UNDETERMINED
                               : *flaw && !far ? STRUT_FIT_UNEXPLAINED
                                               : STRUT_FIT_DISAGREE;
-  for (size_t i = first; i < layout->parameters; i++) {
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++) {
     strut_fit_estimate *estimate = &result->estimates[i];
     bool bound = estimate->at_bound && verdict == STRUT_FIT_UNEXPLAINED;
     if (*result->reason && !bound) estimate->verdict = verdict;
     bool none = *result->reason || !isfinite(estimate->error); /* is known: nor is it given */
     if (none) estimate->low = estimate->high = (double)NAN;
   }
-  return true;
 }
 
 bool strut_fit_is_identified(const strut_fit_result *result) {
@@ -456,6 +448,19 @@ STRUT_VALUES_HERE(omission_values, OMISSION, )
   X("part", "1", NUMBERS(d->part, result_of(of)->variable_count), "of each parameter in it")
 STRUT_VALUES_HERE(direction_values, DIRECTION, const strut_fit_direction *d = of->at)
 
+#define NUMBER_OF_MATCH(X)                                                                         \
+  X("match", "", TEXT(n->match->name), "", .column = {"match"})                                    \
+  X("of", "", TEXT(n->series->of), "", .column = {"of"})                                           \
+  X("at", "", NUMBER(n->at), "", .column = {"at"})                                                 \
+  X("measured", "", NUMBER(n->measured), "", .column = {"measured"})                               \
+  X("predicted", "", NUMBER(n->predicted), "", .column = {"predicted"})                            \
+  X("residual", "", NUMBER(n->residual), "", .column = {"residual"})
+STRUT_VALUES_HERE(number_values, NUMBER_OF_MATCH, const strut_fit_number *n = of->at)
+
+#define NUMBERS_OF_FIT(X)                                                                          \
+  X("numbers", "", LIST(r->numbers, r->number_count), "", .rows = &number_values)
+STRUT_VALUES_HERE(fit_numbers, NUMBERS_OF_FIT, const strut_fit_result *r = of->at)
+
 static strut_value correlations_of(const strut_result_object *of, size_t i) {
   const strut_fit_result *r = of->at;
   return STRUT_VALUE_AS_NUMBERS(r->correlation + i * r->variable_count, r->variable_count);
@@ -518,18 +523,13 @@ STRUT_VALUES(strut_fit_plan_values, PLAN, const strut_fit_plan *p = of->at)
 /* ---- files ---- */
 
 /* A number with its unit, such as "3000 N/m". */
-static void add_quantity(strut_buffer *text, double value, const char *unit) {
-  bool plain = !*unit || strcmp(unit, "1") == 0;
-  strut_csv_add_number(text, value);
-  strut_buffer_add(text, "%s%s", plain ? "" : " ", plain ? "" : unit);
-}
+typedef char quantity_text[STRUT_NUMBER_TEXT + 40];
 
-/* Numbers, each behind a comma; empty for NAN. */
-static void add_cells(strut_buffer *csv, const double *numbers, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    strut_buffer_add(csv, ",");
-    strut_csv_add_number(csv, numbers[i]);
-  }
+static const char *write_quantity(double value, const char *unit, quantity_text text) {
+  size_t length = strut_number_text(value, text);
+  if (*unit && strcmp(unit, "1") != 0)
+    snprintf(text + length, sizeof(quantity_text) - length, " %s", unit);
+  return text;
 }
 
 /* Of the errors of the parameters, SI. */
@@ -542,43 +542,34 @@ static char *covariance_csv(const strut_fit_result *result) {
   for (size_t i = 0; i < n; i++) {
     strut_buffer_add(&csv, "\n%s", estimates[i].name);
     for (size_t j = 0; j < n; j++) {
-      double common = result->correlation[i * n + j] * estimates[i].error * estimates[j].error;
-      add_cells(&csv, &common, 1);
+      strut_buffer_add(&csv, ",");
+      strut_csv_add_number(
+          &csv, result->correlation[i * n + j] * estimates[i].error * estimates[j].error);
     }
   }
   strut_buffer_add(&csv, "\n");
   return strut_buffer_take(&csv);
 }
 
+/* Of the numbers that were measured. */
 static char *residuals_csv(const strut_fit_result *result) {
-  strut_buffer csv = {0};
-  strut_buffer_add(&csv, "match,of,at,measured,predicted,residual\n");
-  for (size_t m = 0; m < result->fit->match_count; m++)
-    for (size_t s = 0; s < result->fit->matches[m].series_count; s++) {
-      const strut_fit_match *match = &result->fit->matches[m];
-      size_t first = match->series[s].first;
-      for (size_t i = 0; i < match->count; i++) {
-        const double numbers[] = {match->at ? match->at[i] : (double)NAN,
-                                  match->series[s].measured[i], result->predicted[first + i],
-                                  result->residual[first + i]};
-        if (isnan(numbers[1])) continue;
-        strut_buffer_add(&csv, "%s,", match->name);
-        strut_csv_add_text(&csv, "%s", match->series[s].of);
-        add_cells(&csv, numbers, 4);
-        strut_buffer_add(&csv, "\n");
-      }
-    }
-  return strut_buffer_take(&csv);
+  strut_fit_result given = {.numbers = strut_allocate(result->number_count, sizeof *given.numbers)};
+  for (size_t k = 0; k < result->number_count && given.numbers; k++)
+    if (!isnan(result->numbers[k].measured))
+      given.numbers[given.number_count++] = result->numbers[k];
+  char *csv = given.numbers ? strut_values_csv(&fit_numbers, "numbers", NULL, &given, NULL) : NULL;
+  strut_release(given.numbers);
+  return csv;
 }
 
 static char *fitted_yaml(const strut_fit_result *result, const char *model) {
   strut_buffer text = {0};
-  const strut_fit_estimate *estimates = result->estimates + result->aligned_count;
+  quantity_text value;
   strut_buffer_add(&text, "strut: 1\nbase: %s\nparameters:\n", model);
-  for (size_t i = 0; i < result->variable_count; i++) {
-    strut_buffer_add(&text, "  %s: ", estimates[i].name);
-    add_quantity(&text, estimates[i].value, estimates[i].unit);
-    strut_buffer_add(&text, " # %s\n", verdicts[estimates[i].verdict]);
+  for (size_t i = result->aligned_count; i < result->parameters; i++) {
+    const strut_fit_estimate *e = &result->estimates[i];
+    strut_buffer_add(&text, "  %s: %s # %s\n", e->name, write_quantity(e->value, e->unit, value),
+                     verdicts[e->verdict]);
   }
   return strut_buffer_take(&text);
 }
@@ -587,42 +578,43 @@ static char *fitted_yaml(const strut_fit_result *result, const char *model) {
 static char *uncertain_yaml(const strut_fit_result *result) {
   strut_buffer text = {0};
   size_t n = result->variable_count;
-  const strut_fit_estimate *estimates = result->estimates + result->aligned_count;
+  quantity_text value, error;
   strut_buffer_add(&text,
                    "strut: 1\nstudy: Uncertain parameters\nmodel: fitted.yaml\naxes:\n"
                    "  - sample:\n      count: 100\n      over:\n");
-  for (size_t i = 0; i < n; i++) {
-    strut_buffer_add(&text, "        %s: {normal: [", estimates[i].name);
-    add_quantity(&text, estimates[i].value, estimates[i].unit);
-    strut_buffer_add(&text, ", ");
-    add_quantity(&text, estimates[i].error, estimates[i].unit);
-    strut_buffer_add(&text, "]}\n");
+  for (size_t i = result->aligned_count; i < result->parameters; i++) {
+    const strut_fit_estimate *e = &result->estimates[i];
+    strut_buffer_add(&text, "        %s: {normal: [%s, %s]}\n", e->name,
+                     write_quantity(e->value, e->unit, value),
+                     write_quantity(e->error, e->unit, error));
   }
   strut_buffer_add(&text, "      correlation:\n");
-  for (size_t i = 0; i < n; i++) {
-    strut_buffer_add(&text, "        - [");
+  for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) {
-      if (j) strut_buffer_add(&text, ", ");
+      strut_buffer_add(&text, j ? ", " : "        - [");
       strut_csv_add_number(&text, i == j ? 1.0 : result->correlation[i * n + j]);
+      if (j + 1 == n) strut_buffer_add(&text, "]\n");
     }
-    strut_buffer_add(&text, "]\n");
-  }
   return strut_buffer_take(&text);
 }
 
 strut_status strut_fit_write(const strut_fit_result *result, const char *directory,
                              const char *model, strut_error *error) {
   if (!result->found) return STRUT_OK;
-  strut_status status = strut_file_write_block(
-      directory, "fit.csv", strut_values_csv(&strut_fit_values, "parameters", NULL, result, NULL),
-      error);
-  if (!status)
-    status = strut_file_write_block(directory, "covariance.csv", covariance_csv(result), error);
-  if (!status)
-    status = strut_file_write_block(directory, "residuals.csv", residuals_csv(result), error);
-  if (!status)
-    status = strut_file_write_block(directory, "fitted.yaml", fitted_yaml(result, model), error);
-  if (!status && strut_fit_is_identified(result))
-    status = strut_file_write_block(directory, "uncertain.yaml", uncertain_yaml(result), error);
+  bool certain = strut_fit_is_identified(result);
+  const struct {
+    const char *name;
+    char *text;
+  } files[] = {{"fit.csv", strut_values_csv(&strut_fit_values, "parameters", NULL, result, NULL)},
+               {"covariance.csv", covariance_csv(result)},
+               {"residuals.csv", residuals_csv(result)},
+               {"fitted.yaml", fitted_yaml(result, model)},
+               {"uncertain.yaml", certain ? uncertain_yaml(result) : NULL}};
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < sizeof files / sizeof *files - !certain; i++)
+    if (status)
+      strut_release(files[i].text);
+    else
+      status = strut_file_write_block(directory, files[i].name, files[i].text, error);
   return status;
 }

@@ -24,25 +24,16 @@ static const double BETWEEN = 0.382;
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
 
-/* The numbers of a match's alignment at the parameters, which are 0 before. */
+/* The numbers of a match's alignment at the parameters. */
 static void find_alignment(const strut_fit_layout *layout, size_t match, const double *parameters,
                            double align[STRUT_FIT_ALIGNS_COUNT]) {
-  for (size_t i = 0; i < layout->aligned_count; i++)
-    if (layout->unknowns[i].match == match)
-      align[layout->unknowns[i].what] = strut_fit_value(layout, i, parameters[i]);
+  for (int what = 0; what < STRUT_FIT_ALIGNS_COUNT; what++) {
+    int32_t i = layout->parts[match].aligned[what];
+    align[what] = i < 0 ? 0.0 : strut_fit_value(layout, (size_t)i, parameters[i]);
+  }
 }
 
 /* ---- predictions ---- */
-
-/* What one match needs of an evaluation. */
-typedef struct prediction {
-  strut_fit_case *one;
-  const strut_fit_match *match;
-  size_t index; /* of the match */
-  double align[STRUT_FIT_ALIGNS_COUNT];
-  double delay[2]; /* in which range it is to be found; both 0: it is known */
-  double from, to; /* times of the samples from which it is found */
-} prediction;
 
 /* Notes what must stop everything; else the point just has no residuals. */
 static bool settle_status(strut_fit_case *one, strut_status status, const strut_error *error) {
@@ -55,15 +46,14 @@ double strut_fit_span(const strut_fit_match *match) {
   return match->at ? match->at[match->count - 1] - match->at[0] : 0.0;
 }
 
-/* Is the number early enough to count? */
-static bool is_early(const strut_fit_case *one, const strut_fit_match *match, size_t i) {
-  return match->kind != STRUT_FIT_MOTION ||
-         match->at[i] <= match->at[0] + one->share * strut_fit_span(match);
+/* Is the number of a match at this time early enough to count? */
+static bool is_early(const strut_fit_case *one, const strut_fit_match *match, double at) {
+  return match->kind != STRUT_FIT_MOTION || at <= match->at[0] + one->share * strut_fit_span(match);
 }
 
 static size_t count_early(const strut_fit_case *one, const strut_fit_match *match) {
   size_t count = match->count;
-  while (count > 1 && !is_early(one, match, count - 1)) count--;
+  while (count > 1 && match->at && !is_early(one, match, match->at[count - 1])) count--;
   return count;
 }
 
@@ -108,38 +98,36 @@ static void prepare_run(const strut_model *model, double duration, strut_experim
 }
 
 /* Even times that cover all delays. */
-static size_t spread_samples(prediction *self, double *time) {
-  const strut_fit_match *match = self->match;
+static size_t spread_samples(strut_fit_case *one, double *time) {
+  const strut_fit_match *match = one->match;
   size_t count = 3 * match->count + 3;
-  self->from = fmax(0.0, match->at[0] - self->delay[1]);
-  self->to = match->at[count_early(self->one, match) - 1] - self->delay[0];
+  one->from = fmax(0.0, match->at[0] - one->delay[1]);
+  one->to = match->at[count_early(one, match) - 1] - one->delay[0];
   for (size_t i = 0; i < count; i++)
-    time[i] = self->from + (self->to - self->from) * (double)i / (double)(count - 1);
+    time[i] = one->from + (one->to - one->from) * (double)i / (double)(count - 1);
   return count;
 }
 
-/* Times of the samples of a match; returns how many. */
-static size_t place_samples(const prediction *self, double *time) {
-  const strut_fit_match *match = self->match;
-  size_t count = match->at ? count_early(self->one, match) : 1;
+/* Times of the samples of a match, the last after some time, for a run needs some; returns how many. */
+static size_t place_samples(const strut_fit_case *one, double *time) {
+  const double *at = one->match->at; /* NULL: all are taken where the run starts */
+  size_t count = count_early(one, one->match);
   for (size_t i = 0; i < count; i++) {
-    double later = match->at && i + 1 < count ? match->at[i + 1] - match->at[i] : 0.0;
-    double at = match->at ? match->at[i] + self->one->between * later : 0.0;
-    time[i] = match->at ? fmax(at - self->align[STRUT_FIT_DELAY], 0.0) : 0.0;
+    double later = at && i + 1 < count ? at[i + 1] - at[i] : 0.0;
+    time[i] = at ? fmax(at[i] + one->between * later - one->align[STRUT_FIT_DELAY], 0.0) : 0.0;
   }
-  if (count == 1) time[count++] = time[0];
+  if (!at || count == 1) time[count] = time[count - 1], count++;
   time[count - 1] = fmax(time[count - 1], AT_ONCE);
   return count;
 }
 
-/* Takes the samples of a run, in the order: number, series; without times all are the first. */
-static void take_samples(const prediction *self, const double *sampled) {
-  const strut_fit_match *match = self->match;
-  size_t count = match->at ? count_early(self->one, match) : match->count;
+/* Takes the samples of a run, in the order: number, series. */
+static void take_samples(const strut_fit_case *one, const double *sampled) {
+  const strut_fit_match *match = one->match;
+  size_t count = count_early(one, match);
   for (size_t i = 0; i < count; i++)
     for (size_t s = 0; s < match->series_count; s++)
-      self->one->predicted[match->series[s].first + i] =
-          sampled[(match->at ? i : 0) * match->series_count + s];
+      one->predicted[match->series[s].first + i] = sampled[i * match->series_count + s];
 }
 
 /* ---- placing ---- */
@@ -154,15 +142,16 @@ static const double ALIKE = 0.5;
  * Finds shift and turn of a match for what is predicted of it; returns the sum of squares that they leave. The turn is
  * the best where both coordinates count alike.
  */
-static double place(const strut_fit_case *one, size_t m, double align[STRUT_FIT_ALIGNS_COUNT]) {
-  const strut_fit_match *match = &one->layout->fit->matches[m];
-  const strut_fit_source *sources = one->layout->parts[m].sources;
+static double place(strut_fit_case *one) {
+  const strut_fit_match *match = one->match;
+  const strut_fit_source *sources = one->layout->parts[one->index].sources;
   const double *from = one->predicted;
+  double *align = one->align;
   double sums[2][4][4] = {{{0.0}}}, q[3][3] = {{0.0}}, rest = 0.0;
   for (size_t s = 0; s < match->series_count; s++)
     for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
       size_t at = match->series[s].first + i;
-      double weight = one->weight[at], measured = one->layout->measured[at];
+      double weight = one->weight[at], measured = one->layout->numbers[at].measured;
       if (!(weight > 0.0)) continue;
       double other =
           sources[s].partner < 0 ? 0.0 : from[match->series[sources[s].partner].first + i];
@@ -195,34 +184,35 @@ static double place(const strut_fit_case *one, size_t m, double align[STRUT_FIT_
 }
 
 /* The numbers of a match delayed so far, of samples (count, series) at even times, and placed. */
-static double place_delayed(prediction *self, double delay, const double *sampled, size_t count) {
-  const strut_fit_match *match = self->match;
+static double place_delayed(strut_fit_case *one, double delay, const double *sampled,
+                            size_t count) {
+  const strut_fit_match *match = one->match;
   size_t n = match->series_count;
   for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
-    double part = (match->at[i] - delay - self->from) / (self->to - self->from);
+    double part = (match->at[i] - delay - one->from) / (one->to - one->from);
     double at = (double)(count - 1) * fmin(fmax(part, 0.0), 1.0);
     size_t k = (size_t)fmin(at, (double)(count - 2));
     for (size_t s = 0; s < n; s++)
-      self->one->predicted[match->series[s].first + i] =
+      one->predicted[match->series[s].first + i] =
           sampled[k * n + s] + (at - (double)k) * (sampled[(k + 1) * n + s] - sampled[k * n + s]);
   }
-  self->align[STRUT_FIT_DELAY] = delay;
-  return place(self->one, self->index, self->align);
+  one->align[STRUT_FIT_DELAY] = delay;
+  return place(one);
 }
 
 /*
  * Finds the delay of a match, and what else places it: of those with a least sum nearby, which is not like the largest,
  * the best or a later one. False: there is none.
  */
-static bool find_delay(prediction *self, const double *sampled, size_t count) {
-  double low = self->delay[0], high = self->delay[1], most = 0.0;
-  size_t delays = 3 * self->match->count < MOST_DELAYS ? 3 * self->match->count : MOST_DELAYS;
+static bool find_delay(strut_fit_case *one, const double *sampled, size_t count) {
+  double low = one->delay[0], high = one->delay[1], most = 0.0;
+  size_t delays = 3 * one->match->count < MOST_DELAYS ? 3 * one->match->count : MOST_DELAYS;
   double step = (high - low) / (double)delays, sum[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
   double least[RANKS] = {HUGE_VAL}, at[RANKS] = {low};
-  size_t ranks = 0, rank = self->one->elsewhere == (int32_t)self->index ? self->one->rank : 0;
+  size_t ranks = 0, rank = one->elsewhere == (int32_t)one->index ? one->rank : 0;
   for (size_t j = 0; j <= delays + 1; j++) {
     sum[0] = sum[1], sum[1] = sum[2], sum[2] = HUGE_VAL;
-    if (j <= delays) sum[2] = place_delayed(self, low + step * (double)j, sampled, count);
+    if (j <= delays) sum[2] = place_delayed(one, low + step * (double)j, sampled, count);
     if (isfinite(sum[2])) most = fmax(most, sum[2]);
     if (!(sum[1] < sum[0] && sum[1] <= sum[2])) continue;
     double bend = sum[0] - 2.0 * sum[1] + sum[2];
@@ -233,46 +223,46 @@ static bool find_delay(prediction *self, const double *sampled, size_t count) {
     least[r] = sum[1], at[r] = low + step * ((double)j - 1.0 + part);
   }
   if (rank && (rank >= ranks || least[rank] > ALIKE * most)) return false;
-  place_delayed(self, at[rank], sampled, count);
+  place_delayed(one, at[rank], sampled, count);
   return true;
 }
 
 /* Runs the model, and samples it. */
-static strut_status predict_motion(prediction *self, strut_setup *setup, const strut_model *model,
-                                   strut_error *error) {
-  bool delays = self->delay[0] < self->delay[1];
-  double *time = self->one->buffer, *value = time + 3 * self->match->count + 3;
-  strut_run_samples samples = {delays ? spread_samples(self, time) : place_samples(self, time),
-                               time, value};
+static strut_status predict_motion(strut_fit_case *one, strut_setup *setup,
+                                   const strut_model *model, strut_error *error) {
+  bool delays = one->delay[0] < one->delay[1];
+  double *time = one->buffer, *value = time + 3 * one->match->count + 3;
+  strut_run_samples samples = {delays ? spread_samples(one, time) : place_samples(one, time), time,
+                               value};
   const strut_run_options options = {
-      .interrupt = self->one->layout->interrupt,
-      .most_evaluations = self->one->layout->plan->study->limit.evaluations,
+      .interrupt = one->layout->interrupt,
+      .most_evaluations = one->layout->plan->study->limit.evaluations,
       .samples = &samples,
       .without_balance = true};
   strut_summary summary = {0};
   double end = time[samples.count - 1];
-  if (!choose_quantities(self->match, setup))
+  if (!choose_quantities(one->match, setup))
     return strut_fail(error, STRUT_BAD_SCENE,
-                      "the model measures a quantity of match '%.60s' no more", self->match->name);
+                      "the model measures a quantity of match '%.60s' no more", one->match->name);
   prepare_run(model, end, &setup->experiment);
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   strut_summary_free(&summary);
-  if (!status && delays && !find_delay(self, value, samples.count))
+  if (!status && delays && !find_delay(one, value, samples.count))
     return strut_fail(error, STRUT_DIVERGED, "there is no other delay");
-  if (!status && !delays) take_samples(self, value);
+  if (!status && !delays) take_samples(one, value);
   return status;
 }
 
-static strut_status predict_curve(prediction *self, strut_setup *setup, const strut_model *model,
+static strut_status predict_curve(strut_fit_case *one, strut_setup *setup, const strut_model *model,
                                   strut_error *error) {
-  const strut_fit_layout *layout = self->one->layout;
+  const strut_fit_layout *layout = one->layout;
   strut_path path = {0};
   setup->experiment.interrupt = layout->interrupt;
   strut_status status =
-      strut_statics_path(&layout->parts[self->index].study, setup, model, &path, error);
-  for (size_t i = 0; i < self->match->count && !status; i++) {
-    double at = self->match->at[i], force = strut_goals_force_at(&path, at);
-    self->one->predicted[self->match->series[0].first + i] = force;
+      strut_statics_path(&layout->parts[one->index].study, setup, model, &path, error);
+  for (size_t i = 0; i < one->match->count && !status; i++) {
+    double at = one->match->at[i], force = strut_goals_force_at(&path, at);
+    one->predicted[one->match->series[0].first + i] = force;
     if (isnan(force))
       status = strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", at);
   }
@@ -281,72 +271,72 @@ static strut_status predict_curve(prediction *self, strut_setup *setup, const st
 }
 
 /* The scene at the values, compiled where it starts. */
-static bool predict_scene(prediction *self) {
-  const strut_fit_layout *layout = self->one->layout;
+static bool predict_scene(strut_fit_case *one) {
+  const strut_fit_layout *layout = one->layout;
   const strut_sweep_scenes *scenes = &layout->plan->scenes;
   strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = scenes->setup(scenes->context, self->one->values, &setup, &error);
-  if (status) return settle_status(self->one, status, &error);
+  strut_status status = scenes->setup(scenes->context, one->values, &setup, &error);
+  if (status) return settle_status(one, status, &error);
   status = strut_equilibrium_cache_resolve(layout->standing, &setup, &error);
   if (!status) status = strut_model_compile(&setup.scene, &model, &error);
   if (!status)
-    status = (self->match->kind == STRUT_FIT_CURVE ? predict_curve : predict_motion)(self, &setup,
-                                                                                     model, &error);
+    status = (one->match->kind == STRUT_FIT_CURVE ? predict_curve : predict_motion)(one, &setup,
+                                                                                    model, &error);
   strut_model_free(model);
   strut_setup_free(&setup);
-  return settle_status(self->one, status, &error);
+  return settle_status(one, status, &error);
 }
 
 static void give_values(const void *context, int64_t point, strut_study_value *values) {
-  const prediction *self = context;
+  const strut_fit_case *one = context;
   (void)point;
-  memcpy(values, self->one->values, self->one->layout->plan->axis_columns * sizeof *values);
+  memcpy(values, one->values, one->layout->plan->axis_columns * sizeof *values);
 }
 
 /* What a study with the match's `compute` keeps. */
-static bool predict_table(prediction *self) {
-  const strut_fit_layout *layout = self->one->layout;
-  const strut_fit_source *source = layout->parts[self->index].sources;
+static bool predict_table(strut_fit_case *one) {
+  const strut_fit_layout *layout = one->layout;
+  const strut_fit_source *source = layout->parts[one->index].sources;
   const strut_sweep_options options = {
-      .interrupt = layout->interrupt, .values = give_values, .point_context = self};
+      .interrupt = layout->interrupt, .values = give_values, .point_context = one};
   strut_arena arena = {0};
-  const strut_sweep_worker worker = {&layout->parts[self->index].table, &options, layout->standing,
+  const strut_sweep_worker worker = {&layout->parts[one->index].table, &options, layout->standing,
                                      NULL};
   strut_sweep_job *job = strut_sweep_make_jobs(worker.plan, &arena, 1);
   if (job) strut_sweep_compute(&worker, 0, job);
   strut_status status = !job ? STRUT_NO_MEMORY : job->status ? job->status : job->cells.row.status;
-  for (size_t s = 0; s < self->match->series_count && !status; s++)
-    for (size_t i = 0; i < self->match->count; i++)
-      self->one->predicted[self->match->series[s].first + i] = job->cells.numbers[source[s].column];
-  bool fine = settle_status(self->one, status, job ? &job->error : &(strut_error){0});
+  for (size_t s = 0; s < one->match->series_count && !status; s++)
+    for (size_t i = 0; i < one->match->count; i++)
+      one->predicted[one->match->series[s].first + i] = job->cells.numbers[source[s].column];
+  bool fine = settle_status(one, status, job ? &job->error : &(strut_error){0});
   strut_arena_free(&arena);
   return fine;
 }
 
-/* The range of the delay that is to be found: all of it, or of a wide one what is about the present delay. */
-static void choose_delays(prediction *self) {
-  const strut_fit_layout *layout = self->one->layout;
-  double now = self->align[STRUT_FIT_DELAY], span = strut_fit_span(self->match);
-  for (size_t i = 0; i < layout->aligned_count; i++) {
-    if (layout->unknowns[i].match != self->index || layout->unknowns[i].what != STRUT_FIT_DELAY)
-      continue;
-    double low = strut_fit_value(layout, i, layout->low[i]);
-    double high = strut_fit_value(layout, i, layout->high[i]);
-    bool wide = high - low > (STRUT_FIT_OWN_CLOCK + 3.0) * span;
-    self->delay[0] = wide ? fmax(low, now - span) : low;
-    self->delay[1] = wide ? fmin(high, now + span) : high;
-  }
+/* The range of the delay, if it is to be found: all of it, or of a wide one what is about the present delay. */
+static void choose_delays(strut_fit_case *one) {
+  const strut_fit_layout *layout = one->layout;
+  double now = one->align[STRUT_FIT_DELAY], span = strut_fit_span(one->match);
+  int32_t i = layout->parts[one->index].aligned[STRUT_FIT_DELAY];
+  one->delay[0] = one->delay[1] = 0.0;
+  if (i < 0 || !one->placing || !one->delays) return;
+  double low = strut_fit_value(layout, (size_t)i, layout->low[i]);
+  double high = strut_fit_value(layout, (size_t)i, layout->high[i]);
+  bool wide = high - low > (STRUT_FIT_OWN_CLOCK + 3.0) * span;
+  one->delay[0] = wide ? fmax(low, now - span) : low;
+  one->delay[1] = wide ? fmin(high, now + span) : high;
 }
 
 /* Places a match that has been predicted, with the delay that has been found by then. */
-static void keep_placing(prediction *self) {
-  const strut_fit_layout *layout = self->one->layout;
-  self->one->placed_sum += place(self->one, self->index, self->align);
-  for (size_t i = 0; i < layout->aligned_count; i++)
-    if (layout->unknowns[i].match == self->index)
-      self->one->placing[i] = strut_fit_parameter(layout, i, self->align[layout->unknowns[i].what]);
+static void keep_placing(strut_fit_case *one) {
+  const strut_fit_layout *layout = one->layout;
+  one->placed_sum += place(one);
+  for (int what = 0; what < STRUT_FIT_ALIGNS_COUNT; what++) {
+    int32_t i = layout->parts[one->index].aligned[what];
+    if (i >= 0) one->placing[i] = strut_fit_parameter(layout, (size_t)i, one->align[what]);
+  }
 }
 
 /* Do both have the same runs? Shifts and turns need none. */
@@ -368,15 +358,15 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   one->evaluations++;
   one->known = true;
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
-    prediction p = {.one = one, .match = &fit->matches[m], .index = m};
-    find_alignment(layout, m, parameters, p.align);
     if ((int32_t)m == one->left_out) continue;
-    if (one->placing && one->delays) choose_delays(&p);
+    one->match = &fit->matches[m], one->index = m;
+    find_alignment(layout, m, parameters, one->align);
+    choose_delays(one);
     strut_fit_fill_values(layout, 0, parameters, one->values);
     for (size_t k = 0; k < fit->set_count; k++)
-      one->values[fit->column + fit->variable_count + k] = p.match->values[k];
-    one->known = p.match->kind == STRUT_FIT_TABLE ? predict_table(&p) : predict_scene(&p);
-    if (one->known && one->placing) keep_placing(&p);
+      one->values[fit->column + fit->variable_count + k] = one->match->values[k];
+    one->known = one->match->kind == STRUT_FIT_TABLE ? predict_table(one) : predict_scene(one);
+    if (one->known && one->placing) keep_placing(one);
   }
   memcpy(one->latest, parameters, layout->parameters * sizeof *parameters);
   return one->known;
@@ -384,29 +374,23 @@ static bool predict(strut_fit_case *one, const double *parameters) {
 
 /* ---- residuals ---- */
 
-/* The numbers of a match, turned and shifted. */
-static void align_match(const strut_fit_layout *layout, size_t m, const double *from,
-                        const double *align, double *to) {
-  const strut_fit_match *match = &layout->fit->matches[m];
-  double c = cos(align[STRUT_FIT_ROTATE]), s = sin(align[STRUT_FIT_ROTATE]);
-  for (size_t k = 0; k < match->series_count; k++) {
-    const strut_fit_source *source = &layout->parts[m].sources[k];
-    size_t first = match->series[k].first,
-           partner = source->partner < 0 ? k : (size_t)source->partner;
-    double across = partner == k ? 0.0 : source->axis ? s : -s, along = partner == k ? 1.0 : c;
-    double shift =
-        source->axis < 0 ? 0.0 : align[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
-    for (size_t i = 0; i < match->count; i++)
-      to[first + i] =
-          along * from[first + i] + across * from[match->series[partner].first + i] + shift;
-  }
-}
-
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to) {
   for (size_t m = 0; m < one->layout->fit->match_count; m++) {
-    double align[STRUT_FIT_ALIGNS_COUNT] = {0.0};
+    const strut_fit_match *match = &one->layout->fit->matches[m];
+    double align[STRUT_FIT_ALIGNS_COUNT];
     find_alignment(one->layout, m, parameters, align);
-    align_match(one->layout, m, one->predicted, align, to);
+    double c = cos(align[STRUT_FIT_ROTATE]), s = sin(align[STRUT_FIT_ROTATE]);
+    for (size_t k = 0; k < match->series_count; k++) {
+      const strut_fit_source *source = &one->layout->parts[m].sources[k];
+      bool turns = source->partner >= 0;
+      size_t partner = turns ? (size_t)source->partner : k, first = match->series[k].first;
+      const double *own = one->predicted + first,
+                   *other = one->predicted + match->series[partner].first;
+      double across = !turns ? 0.0 : source->axis ? s : -s, along = turns ? c : 1.0;
+      double shift = source->axis < 0 ? 0.0 : align[source->axis];
+      for (size_t i = 0; i < match->count; i++)
+        to[first + i] = along * own[i] + across * other[i] + shift;
+    }
   }
 }
 
@@ -441,44 +425,31 @@ const strut_fit_match *strut_fit_find_coarse(strut_fit_case *one, const double *
 
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out) {
   const strut_fit_layout *layout = one->layout;
-  double *weight = one->weight;
   one->share = share, one->left_out = left_out;
   one->known = false, one->used = 0;
-  for (size_t m = 0; m < layout->fit->match_count; m++) {
-    const strut_fit_match *match = &layout->fit->matches[m];
-    for (size_t s = 0; s < match->series_count; s++)
-      for (size_t i = 0; i < match->count; i++, weight++) {
-        const double *of = match->series[s].weights;
-        bool counts = (int32_t)m != left_out && !isnan(match->series[s].measured[i]);
-        *weight = (of ? sqrt(of[i]) : 1.0) / layout->parts[m].noise;
-        if (!counts || !is_early(one, match, i)) *weight = 0.0;
-        one->used += *weight > 0.0;
-      }
+  for (size_t k = 0; k < layout->count; k++) {
+    const strut_fit_number *number = &layout->numbers[k];
+    bool counts = (int32_t)(number->match - layout->fit->matches) != left_out &&
+                  !isnan(number->measured) && is_early(one, number->match, number->at);
+    one->weight[k] = counts ? number->factor : 0.0;
+    one->used += one->weight[k] > 0.0;
   }
 }
 
 /* Notes the first series with a number that counts, but which the model does not have. */
-static bool has_numbers(strut_fit_case *one, const double *residual) {
-  const strut_study_fit *fit = one->layout->fit;
-  for (size_t m = 0, k = 0; m < fit->match_count; m++)
-    for (size_t s = 0; s < fit->matches[m].series_count; s++)
-      for (size_t i = 0; i < fit->matches[m].count; i++, k++) {
-        if (isfinite(residual[k])) continue;
-        one->missing = &fit->matches[m].series[s];
-        strut_fail(&one->error, STRUT_DIVERGED, "the model has no '%.60s'", one->missing->of);
-        return false;
-      }
-  return true;
-}
-
 static bool find_residuals(void *context, const double *parameters, double *residual) {
   strut_fit_case *one = context;
   if (one->status || !predict(one, parameters)) return false;
   strut_fit_align_all(one, parameters, residual);
-  for (size_t k = 0; k < one->layout->count; k++)
-    residual[k] =
-        one->weight[k] > 0.0 ? one->weight[k] * (residual[k] - one->layout->measured[k]) : 0.0;
-  return has_numbers(one, residual);
+  for (size_t k = 0; k < one->layout->count; k++) {
+    const strut_fit_number *number = &one->layout->numbers[k];
+    residual[k] = one->weight[k] > 0.0 ? one->weight[k] * (residual[k] - number->measured) : 0.0;
+    if (isfinite(residual[k])) continue;
+    one->missing = number->series;
+    strut_fail(&one->error, STRUT_DIVERGED, "the model has no '%.60s'", one->missing->of);
+    return false;
+  }
+  return true;
 }
 
 double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size_t rank,

@@ -35,11 +35,12 @@ static const double MUCH = 1e-2, EXACT = 1e-12;
 /* Singular values below this part of the largest are 0. */
 static const double SINGULAR = 1e-12;
 
-/* A problem while it is solved, with the parameters that are not held. */
+/* A problem while it is solved. */
 typedef struct solver {
   const strut_least_squares *problem;
-  size_t free;          /* parameters */
-  double *at;           /* (parameters) of the problem, within the box */
+  double *low, *high;   /* (parameters) the box, in which one that is held has no room */
+  double *at;           /* (parameters) within the box */
+  double *outside;      /* (parameters) how far from there the method is */
   double *ahead, *back; /* (count) residuals beside a point */
   double *derivative;   /* (count) */
   double *known; /* (count) at the latest point that had some: where the matrix is asked for */
@@ -47,35 +48,47 @@ typedef struct solver {
   bool lost;     /* residuals end there while they get smaller */
 } solver;
 
-static bool is_held(const solver *self, size_t i) { return (int32_t)i == self->problem->held; }
+/* False: memory is out. */
+static bool begin(solver *self, const strut_least_squares *problem, const double *parameters,
+                  strut_arena *arena) {
+  size_t n = problem->parameters, count = problem->count;
+  *self = (solver){.problem = problem,
+                   .low = strut_arena_copy(arena, problem->low, n, sizeof(double)),
+                   .high = strut_arena_copy(arena, problem->high, n, sizeof(double)),
+                   .at = strut_arena_copy(arena, parameters, n, sizeof(double))};
+  bool fine =
+      self->low && self->high && self->at && STRUT_NUMBERS(arena, n, &self->outside) &&
+      STRUT_NUMBERS(arena, count, &self->ahead, &self->back, &self->derivative, &self->known);
+  if (fine && problem->held >= 0)
+    self->low[problem->held] = self->high[problem->held] = parameters[problem->held];
+  return fine;
+}
 
-/* The nearest point of the box, and how far the parameters are outside (free). */
-static void enter_box(solver *self, const gsl_vector *x, double *outside) {
-  for (size_t i = 0, k = 0; i < self->problem->parameters; i++) {
-    if (is_held(self, i)) continue;
-    double value = gsl_vector_get(x, k);
-    self->at[i] = fmin(fmax(value, self->problem->low[i]), self->problem->high[i]);
-    outside[k++] = value - self->at[i];
+/* Goes to the nearest point of the box. */
+static void enter_box(solver *self, const gsl_vector *x) {
+  for (size_t i = 0; i < self->problem->parameters; i++) {
+    double value = gsl_vector_get(x, i);
+    self->at[i] = fmin(fmax(value, self->low[i]), self->high[i]);
+    self->outside[i] = value - self->at[i];
   }
 }
 
 static bool evaluate(solver *self, double *residual) {
-  if (!self->problem->residuals(self->problem->context, self->at, residual)) return false;
-  for (size_t i = 0; i < self->problem->count; i++)
-    if (!isfinite(residual[i])) return false;
-  return true;
+  bool fine = self->problem->residuals(self->problem->context, self->at, residual);
+  for (size_t i = 0; i < self->problem->count && fine; i++) fine = isfinite(residual[i]);
+  return fine;
 }
 
 static int find_residuals(const gsl_vector *x, void *context, gsl_vector *f) {
   solver *self = context;
   size_t count = self->problem->count;
-  double outside[STRUT_LEAST_SQUARES_MOST];
-  enter_box(self, x, outside);
+  enter_box(self, x);
   if (evaluate(self, f->data))
     memcpy(self->known, f->data, count * sizeof *self->known);
   else
     for (size_t i = 0; i < count; i++) f->data[i] = NONE;
-  for (size_t k = 0; k < self->free; k++) f->data[count + k] = self->drawn * outside[k];
+  for (size_t i = 0; i < self->problem->parameters; i++)
+    f->data[count + i] = self->drawn * self->outside[i];
   return GSL_SUCCESS;
 }
 
@@ -91,67 +104,48 @@ static const double *look_beside(solver *self, size_t i, double *beside, double 
 }
 
 /* The derivative by parameter i, and how far that could be looked at to both sides: 0, 0 where it could not. */
-static void differentiate(solver *self, size_t i, double *derivative, double side[2]) {
-  const strut_least_squares *problem = self->problem;
-  double at = self->at[i], h = problem->step * fmax(fabs(at), 1.0);
-  double low = fmax(at - h, problem->low[i]), high = fmin(at + h, problem->high[i]);
+static void differentiate(solver *self, size_t i, double side[2]) {
+  double at = self->at[i], h = self->problem->step * fmax(fabs(at), 1.0);
+  double low = fmax(at - h, self->low[i]), high = fmin(at + h, self->high[i]);
   const double *ahead = look_beside(self, i, &high, self->ahead);
-  bool enough = problem->one_sided && high > at;
+  bool enough = self->problem->one_sided && high > at;
   double first = enough ? at : low;
   const double *back = look_beside(self, i, &first, self->back);
-  for (size_t j = 0; j < problem->count; j++)
-    derivative[j] = high > first ? (ahead[j] - back[j]) / (high - first) : 0.0;
-  if (!enough) low = first;
-  side[0] = at - low;
+  for (size_t j = 0; j < self->problem->count; j++)
+    self->derivative[j] = high > first ? (ahead[j] - back[j]) / (high - first) : 0.0;
+  side[0] = at - (enough ? low : first);
   side[1] = high - at;
 }
 
-/* How near to a bound parameter i is on it. */
-static double close_to(const solver *self, size_t i) {
-  double near = fmin(CLOSE * self->problem->near, 0.5 * self->problem->step);
-  return near * fmax(fabs(self->at[i]), 1.0);
-}
-
-/* Residuals get smaller where parameter i cannot go: out of the box, or to where there are none. */
-static bool is_stopped(solver *self, size_t i, const double *derivative, const double side[2]) {
-  double at = self->at[i], near = close_to(self, i), slope = 0.0;
-  for (size_t j = 0; j < self->problem->count; j++) slope += derivative[j] * self->known[j];
+/*
+ * Does parameter i stay where it is? It is outside of the box, where residuals do not depend on it; or they get smaller
+ * where it cannot go: out of the box, or to where there are none. Else its derivative is there, 0 where it is held.
+ */
+static bool is_stopped(solver *self, size_t i) {
+  double at = self->at[i], side[2], slope = 0.0;
+  double near = fmin(CLOSE * self->problem->near, 0.5 * self->problem->step) * fmax(fabs(at), 1.0);
+  if (fabs(self->outside[i]) > near) return true;
+  differentiate(self, i, side);
+  for (size_t j = 0; j < self->problem->count; j++) slope += self->derivative[j] * self->known[j];
   if (slope == 0.0 || side[slope < 0.0] > near) return false;
-  if (at - self->problem->low[i] > near && self->problem->high[i] - at > near) self->lost = true;
+  if (at - self->low[i] > near && self->high[i] - at > near) self->lost = true;
   return true;
 }
 
-/*
- * A parameter outside, where residuals do not depend on it, is drawn to its bound; so is one that is stopped, while
- * others go their way.
- */
+/* A parameter that is stopped is drawn to the box, while others go their way. */
 static int find_jacobian(const gsl_vector *x, void *context, gsl_matrix *jacobian) {
   solver *self = context;
   size_t count = self->problem->count;
-  double outside[STRUT_LEAST_SQUARES_MOST], side[2];
   gsl_matrix_set_zero(jacobian);
   self->lost = false;
-  enter_box(self, x, outside);
-  for (size_t i = 0, k = 0; i < self->problem->parameters; i++) {
-    if (is_held(self, i)) continue;
-    bool stopped = fabs(outside[k]) > close_to(self, i);
-    if (!stopped) {
-      differentiate(self, i, self->derivative, side);
-      stopped = is_stopped(self, i, self->derivative, side);
-    }
+  enter_box(self, x);
+  for (size_t i = 0; i < self->problem->parameters; i++) {
+    bool stopped = is_stopped(self, i);
     for (size_t j = 0; j < count && !stopped; j++)
-      gsl_matrix_set(jacobian, j, k, self->derivative[j]);
-    if (stopped) gsl_matrix_set(jacobian, count + k, k, self->drawn);
-    k++;
+      gsl_matrix_set(jacobian, j, i, self->derivative[j]);
+    if (stopped) gsl_matrix_set(jacobian, count + i, i, self->drawn);
   }
   return GSL_SUCCESS;
-}
-
-static bool allocate(solver *self, strut_arena *arena) {
-  size_t count = self->problem->count;
-  return STRUT_ALLOCATE(arena, STRUT_NEW(self->at, self->problem->parameters),
-                        STRUT_NEW(self->ahead, count), STRUT_NEW(self->back, count),
-                        STRUT_NEW(self->known, count), STRUT_NEW(self->derivative, count));
 }
 
 static double sum_of_squares(const double *residual, size_t count) {
@@ -179,45 +173,37 @@ static double find_fall(const gsl_matrix *jacobian, const gsl_vector *residual) 
   return fall;
 }
 
-/* Is the sum as small as it gets, up to that part of its mean? `first`: the sum where the method began. */
-static bool is_least(const solver *self, const gsl_multifit_nlinear_workspace *workspace,
-                     double first, double part) {
-  const gsl_vector *residual = gsl_multifit_nlinear_residual(workspace);
-  double sum = sum_of_squares(residual->data, residual->size);
-  double fall = find_fall(gsl_multifit_nlinear_jac(workspace), residual);
-  return fall >= 0.0 && (fall <= part * sum / (double)self->problem->count || sum <= EXACT * first);
-}
-
 /*
- * Iterates until steps are short, or none makes the sum smaller. False: steps ran out, or their number did, while the
- * sum should still fall.
+ * Iterates until steps are short, or none makes the sum smaller. It has not converged where steps ran out, or their
+ * number did, while the sum should still fall.
  */
-static bool converge(const solver *self, gsl_multifit_nlinear_workspace *workspace, double first) {
-  int info = 0;
-  int status = gsl_multifit_nlinear_driver((size_t)self->problem->most_steps, self->problem->near,
-                                           FLAT, FLAT, NULL, NULL, &info, workspace);
-  return is_least(self, workspace, first, status ? MUCH : 1.0);
-}
-
-/* Solves for the free parameters in x. */
-static strut_status iterate(solver *self, gsl_vector *x, strut_fit_solution *solution) {
+static strut_status iterate(solver *self, strut_fit_solution *solution) {
+  const strut_least_squares *problem = self->problem;
   gsl_multifit_nlinear_parameters settings = gsl_multifit_nlinear_default_parameters();
   gsl_multifit_nlinear_fdf system = {.f = find_residuals,
                                      .df = find_jacobian,
-                                     .n = self->problem->count + self->free,
-                                     .p = self->free,
+                                     .n = problem->count + problem->parameters,
+                                     .p = problem->parameters,
                                      .params = self};
+  double at[STRUT_LEAST_SQUARES_MOST], first = sum_of_squares(self->known, problem->count);
+  int info = 0;
   settings.solver = gsl_multifit_nlinear_solver_svd;
-  self->drawn = DRAWN * sqrt(solution->sum);
+  self->drawn = DRAWN * sqrt(first);
+  memcpy(at, self->at, problem->parameters * sizeof *at);
+  gsl_vector_view x = gsl_vector_view_array(at, problem->parameters);
   gsl_multifit_nlinear_workspace *workspace =
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, system.n, system.p);
   if (!workspace) return STRUT_NO_MEMORY;
-  bool fine =
-      !gsl_multifit_nlinear_init(x, &system, workspace) && converge(self, workspace, solution->sum);
-  gsl_vector_memcpy(x, gsl_multifit_nlinear_position(workspace));
-  solution->sum =
-      sum_of_squares(gsl_multifit_nlinear_residual(workspace)->data, self->problem->count);
-  solution->end = fine && !self->lost ? STRUT_FIT_CONVERGED : STRUT_FIT_STUCK;
+  bool fine = !gsl_multifit_nlinear_init(&x.vector, &system, workspace);
+  bool more = fine && gsl_multifit_nlinear_driver((size_t)problem->most_steps, problem->near, FLAT,
+                                                  FLAT, NULL, NULL, &info, workspace);
+  const gsl_vector *residual = gsl_multifit_nlinear_residual(workspace);
+  double sum = sum_of_squares(residual->data, residual->size);
+  double fall = fine ? find_fall(gsl_multifit_nlinear_jac(workspace), residual) : -1.0;
+  bool least = fall <= (more ? MUCH : 1.0) * sum / (double)problem->count || sum <= EXACT * first;
+  enter_box(self, gsl_multifit_nlinear_position(workspace));
+  solution->sum = sum_of_squares(residual->data, problem->count);
+  solution->end = fall >= 0.0 && least && !self->lost ? STRUT_FIT_CONVERGED : STRUT_FIT_STUCK;
   gsl_multifit_nlinear_free(workspace);
   return STRUT_OK;
 }
@@ -225,24 +211,11 @@ static strut_status iterate(solver *self, gsl_vector *x, strut_fit_solution *sol
 strut_status strut_least_squares_solve(const strut_least_squares *problem, double *parameters,
                                        strut_fit_solution *solution) {
   strut_arena arena = {0};
-  solver self = {.problem = problem, .free = problem->parameters - (problem->held >= 0)};
-  strut_status status = STRUT_OK;
+  solver self;
+  strut_status status = STRUT_NO_MEMORY;
   *solution = (strut_fit_solution){.end = STRUT_FIT_FAILED, .sum = HUGE_VAL};
-  if (!allocate(&self, &arena)) {
-    strut_arena_free(&arena);
-    return STRUT_NO_MEMORY;
-  }
-  memcpy(self.at, parameters, problem->parameters * sizeof *parameters);
-  if (evaluate(&self, self.known)) {
-    solution->sum = sum_of_squares(self.known, problem->count);
-    solution->end = STRUT_FIT_CONVERGED;
-    gsl_vector *x = self.free ? gsl_vector_alloc(self.free) : NULL;
-    for (size_t i = 0, k = 0; x && i < problem->parameters; i++)
-      if (!is_held(&self, i)) gsl_vector_set(x, k++, parameters[i]);
-    double outside[STRUT_LEAST_SQUARES_MOST];
-    if (self.free) status = x ? iterate(&self, x, solution) : STRUT_NO_MEMORY;
-    if (x) enter_box(&self, x, outside);
-    gsl_vector_free(x);
+  if (begin(&self, problem, parameters, &arena)) {
+    status = evaluate(&self, self.known) ? iterate(&self, solution) : STRUT_OK;
     memcpy(parameters, self.at, problem->parameters * sizeof *parameters);
   }
   strut_arena_free(&arena);
@@ -252,13 +225,11 @@ strut_status strut_least_squares_solve(const strut_least_squares *problem, doubl
 bool strut_least_squares_jacobian(const strut_least_squares *problem, const double *parameters,
                                   double *residual, double *jacobian) {
   strut_arena arena = {0};
-  solver self = {.problem = problem};
+  solver self;
   double side[2];
-  bool fine = allocate(&self, &arena);
-  if (fine) memcpy(self.at, parameters, problem->parameters * sizeof *parameters);
-  fine = fine && evaluate(&self, self.known);
+  bool fine = begin(&self, problem, parameters, &arena) && evaluate(&self, self.known);
   for (size_t i = 0; i < problem->parameters && fine; i++) {
-    differentiate(&self, i, self.derivative, side);
+    differentiate(&self, i, side);
     fine = side[0] + side[1] > 0.0;
     for (size_t j = 0; j < problem->count; j++)
       jacobian[j * problem->parameters + i] = self.derivative[j];

@@ -16,23 +16,19 @@ enum {
   PEEKED_LINES = 6
 };
 
-/* A line, as its first cell and how many it has. */
-typedef struct record {
-  size_t first, count;
-} record;
-
 /* A CSV text being read: a copy, in which a NUL ends each cell. */
 typedef struct reader {
   char *at, *end, separator;
   strut_diagnostics *diagnostics;
-  size_t before; /* messages that there were */
+  size_t most_messages;
   strut_csv *csv;
   char **cell; /* of strut_allocate */
   size_t cell_count, cell_capacity;
-  record *head; /* the lines of the header, and some more */
-  size_t head_count, rows;
-  size_t names, units; /* of `head`: the line with the names; with their units, or SIZE_MAX */
-  bool failed;         /* memory was out */
+  size_t *line; /* (line_count + 1) the first cell of each, of strut_allocate */
+  size_t line_count, line_capacity;
+  size_t names, units,
+      rows;    /* lines: with the names; with their units, or SIZE_MAX; the first row */
+  bool failed; /* memory was out */
 } reader;
 
 /* ---- places ---- */
@@ -57,9 +53,9 @@ static void report(const reader *self, const char *at, const char *what) {
 }
 
 /* The place of a whole line. */
-static strut_place line_place(const reader *self, record line) {
+static strut_place line_place(const reader *self, size_t line) {
   const strut_csv *csv = self->csv;
-  const char *at = csv->text + (self->cell[line.first] - csv->copy);
+  const char *at = csv->text + (self->cell[self->line[line]] - csv->copy);
   return strut_place_at(place_of(csv->text, at, 1).line, 1, 1);
 }
 
@@ -78,8 +74,7 @@ static void keep(reader *self, char *from, char *to) {
 }
 
 /* Reads one line. In quotes, quotes are doubled; other cells are without spaces around them. */
-static record read_line(reader *self) {
-  record line = {.first = self->cell_count};
+static void read_line(reader *self) {
   char *from = self->at, *to = from; /* begin of the cell; where its next character goes */
   enum { PLAIN, QUOTED, CLOSED, WRONG } state = PLAIN;
   for (bool last = false; !last && !self->failed; self->at += self->at < self->end) {
@@ -108,20 +103,28 @@ static record read_line(reader *self) {
       state = WRONG;
     }
   }
-  line.count = self->cell_count - line.first;
-  return line;
 }
 
-/* The next line that is neither a comment nor, unless those count, empty; count 0 after the last. */
-static record next_line(reader *self, bool empty_counts) {
-  while (self->at < self->end && !self->failed) {
-    bool comment = *self->at == '#';
-    record line = read_line(self);
-    bool empty = !self->failed && line.count == 1 && !*self->cell[line.first];
-    if (!self->failed && !comment && (empty_counts || !empty)) return line;
-    self->cell_count = line.first;
+/*
+ * Reads the lines of the header, and others that are no comments. Empty ones may be gaps of a single column, but not
+ * where `header` lines, or some that may be one, are about to end.
+ */
+static void read_lines(reader *self, size_t header) {
+  size_t most = MOST_ROWS + header + PEEKED_LINES, sure = header ? header + 1 : PEEKED_LINES;
+  while (self->at < self->end && self->line_count <= most &&
+         self->diagnostics->count < self->most_messages) {
+    bool counts = *self->at != '#' || self->line_count < header;
+    size_t first = self->cell_count;
+    read_line(self);
+    self->failed = self->failed || !strut_grow(&self->line, &self->line_capacity,
+                                               self->line_count + 1, sizeof *self->line);
+    if (self->failed) return;
+    bool empty = self->cell_count == first + 1 && !*self->cell[first];
+    if (empty && self->line_count >= header && self->line_count < sure) counts = false;
+    self->line[self->line_count] = first;
+    if (counts) self->line[++self->line_count] = self->cell_count;
+    if (!counts) self->cell_count = first;
   }
-  return (record){.first = self->cell_count};
 }
 
 /* The character that separates cells in most of the first lines, behind those of the header above names. */
@@ -149,9 +152,12 @@ static char find_separator(const reader *self, size_t header) {
 
 /* ---- the header ---- */
 
+static size_t cells_in(const reader *self, size_t line) {
+  return self->line[line + 1] - self->line[line];
+}
+
 static const char *head_cell(const reader *self, size_t line, size_t column) {
-  const record *r = &self->head[line];
-  return column < r->count ? self->cell[r->first + column] : "";
+  return column < cells_in(self, line) ? self->cell[self->line[line] + column] : "";
 }
 
 static bool is_number(const char *text) {
@@ -163,7 +169,7 @@ static bool is_filled(const char *text) { return *text; }
 
 static size_t count_cells(const reader *self, size_t line, bool (*is)(const char *text)) {
   size_t count = 0;
-  for (size_t i = 0; i < self->head[line].count; i++) count += is(head_cell(self, line, i));
+  for (size_t i = 0; i < cells_in(self, line); i++) count += is(head_cell(self, line, i));
   return count;
 }
 
@@ -178,7 +184,7 @@ static const char *unbracketed(reader *self, const char *text) {
 /* Has the line units, and otherwise nothing? */
 static bool is_of_units(reader *self, size_t line) {
   size_t units = 0;
-  for (size_t i = 0; i < self->head[line].count; i++) {
+  for (size_t i = 0; i < cells_in(self, line); i++) {
     const char *text = unbracketed(self, head_cell(self, line, i));
     strut_quantity q;
     if (!text) self->failed = true;
@@ -194,7 +200,7 @@ static bool is_of_units(reader *self, size_t line) {
  * first has less in it than the next, as Tracker's, or is DeepLabCut's.
  */
 static size_t count_header(reader *self) {
-  size_t count = 1, last = self->head_count - 1;
+  size_t count = 1, last = (self->line_count < PEEKED_LINES ? self->line_count : PEEKED_LINES) - 1;
   bool more = last > 1 && (count_cells(self, 0, is_filled) < count_cells(self, 1, is_filled) ||
                            strcmp(head_cell(self, 0, 0), "scorer") == 0);
   while (more && count < last && !count_cells(self, count, is_number)) count++;
@@ -205,16 +211,8 @@ static size_t count_header(reader *self) {
 }
 
 /* Finds the names, and where rows begin. False: that was reported. */
-static bool read_header(reader *self, size_t header) {
-  size_t wanted = header ? header + 1 : PEEKED_LINES;
-  self->head = strut_arena_allocate(&self->csv->arena, wanted, sizeof *self->head);
-  if (!self->head) self->failed = true;
-  while (self->head_count < wanted && self->at < self->end && !self->failed) {
-    record line = self->head_count < header ? read_line(self) : next_line(self, false);
-    if (line.count) self->head[self->head_count++] = line;
-  }
-  if (self->failed) return false;
-  if (self->head_count < header || !self->head_count) {
+static bool find_header(reader *self, size_t header) {
+  if (self->line_count < header || !self->line_count) {
     report(self, self->csv->copy,
            header ? "the file has fewer lines than its header should have"
                   : "the file is empty, expected a table");
@@ -246,7 +244,7 @@ static void split_title(reader *self, const char *title, strut_csv_title *column
 /* A name that is there twice belongs to what is above it: a cell counts until the next one. */
 static const char *whole_name(reader *self, size_t i, const char *name) {
   size_t count = 0, at = i;
-  for (size_t k = 0; k < self->head[self->names].count; k++)
+  for (size_t k = 0; k < cells_in(self, self->names); k++)
     count += strcmp(head_cell(self, self->names, k), head_cell(self, self->names, i)) == 0;
   if (count < 2 || !self->names) return name;
   while (at > 0 && !*head_cell(self, self->names - 1, at)) at--;
@@ -257,7 +255,7 @@ static const char *whole_name(reader *self, size_t i, const char *name) {
 /* The titles, from the cells of the header before rows take their place. */
 static void make_titles(reader *self) {
   strut_csv *csv = self->csv;
-  size_t count = self->head[self->names].count;
+  size_t count = cells_in(self, self->names);
   csv->titles = strut_arena_allocate(&csv->arena, count, sizeof *csv->titles);
   if (!csv->titles) self->failed = true;
   for (size_t i = 0; i < count && !self->failed; i++) {
@@ -273,42 +271,35 @@ static void make_titles(reader *self) {
 
 /* ---- rows ---- */
 
-/* Moves the line's cells behind those that are kept. */
-static void take_row(reader *self, record line) {
+/* Moves the cells of the names to the front, and those of rows behind them. */
+static void take_rows(reader *self) {
   strut_csv *csv = self->csv;
-  size_t columns = csv->column_count, kept = (1 + csv->row_count) * columns;
-  while (line.count > columns && !*self->cell[line.first + line.count - 1]) line.count--;
-  if (line.count != columns)
-    strut_diagnose(self->diagnostics, line_place(self, line),
-                   "%zu cells, expected %zu as in the header", line.count, columns);
-  if (csv->row_count == MOST_ROWS) {
-    strut_diagnose(self->diagnostics, line_place(self, line), "more than %d rows", MOST_ROWS);
-    self->at = self->end;
-  }
-  if (line.count != columns) return;
-  memmove(&self->cell[kept], &self->cell[line.first], columns * sizeof *self->cell);
-  csv->row_count++;
-}
-
-static void read_rows(reader *self) {
-  const record names = self->head[self->names];
-  if (names.count > MOST_COLUMNS)
-    strut_diagnose(self->diagnostics, line_place(self, names), "more than %d columns",
+  size_t columns = csv->column_count = cells_in(self, self->names),
+         bytes = columns * sizeof(char *);
+  if (columns > MOST_COLUMNS)
+    strut_diagnose(self->diagnostics, line_place(self, self->names), "more than %d columns",
                    MOST_COLUMNS);
-  self->csv->column_count = names.count;
-  memmove(self->cell, &self->cell[names.first], names.count * sizeof *self->cell);
-  for (size_t i = self->rows; i < self->head_count; i++) take_row(self, self->head[i]);
-  while (!self->failed && self->diagnostics->count < self->before + MOST_MESSAGES) {
-    self->cell_count = (1 + self->csv->row_count) * names.count;
-    record line = next_line(self, names.count == 1);
-    if (!line.count || self->failed) break;
-    take_row(self, line);
+  memmove(self->cell, self->cell + self->line[self->names], bytes);
+  for (size_t i = self->rows;
+       i < self->line_count && self->diagnostics->count < self->most_messages; i++) {
+    char **cell = self->cell + self->line[i];
+    size_t count = cells_in(self, i);
+    if (columns > 1 && count == 1 && !**cell) continue;
+    while (count > columns && !*cell[count - 1]) count--;
+    if (count != columns)
+      strut_diagnose(self->diagnostics, line_place(self, i),
+                     "%zu cells, expected %zu as in the header", count, columns);
+    else if (csv->row_count < MOST_ROWS)
+      memmove(self->cell + ++csv->row_count * columns, cell, bytes);
+    else
+      strut_diagnose(self->diagnostics, line_place(self, i), "more than %d rows", MOST_ROWS);
   }
 }
 
 strut_status strut_csv_read(const char *text, size_t length, int header,
                             strut_diagnostics *diagnostics, strut_csv *csv) {
-  reader r = {.diagnostics = diagnostics, .before = diagnostics->count, .csv = csv};
+  size_t before = diagnostics->count;
+  reader r = {.diagnostics = diagnostics, .most_messages = before + MOST_MESSAGES, .csv = csv};
   const char *nul = memchr(text, '\0', length); /* it would end a cell */
   *csv = (strut_csv){.text = text};
   csv->copy = r.at = strut_arena_text(&csv->arena, text, length);
@@ -323,20 +314,22 @@ strut_status strut_csv_read(const char *text, size_t length, int header,
     r.end = r.at + length;
     r.at += strut_text_mark(text, length);
     r.separator = find_separator(&r, (size_t)header);
-    bool fine = read_header(&r, (size_t)header);
+    read_lines(&r, (size_t)header);
+    bool fine = !r.failed && find_header(&r, (size_t)header);
     if (fine) make_titles(&r);
-    if (fine && !r.failed) read_rows(&r);
+    if (fine && !r.failed) take_rows(&r);
   }
-  if (!r.failed && diagnostics->count == r.before && !csv->row_count)
+  if (!r.failed && diagnostics->count == before && !csv->row_count)
     strut_diagnose(diagnostics, strut_place_at(1, 1, 1), "the table has a header but no rows");
-  if (!r.failed && diagnostics->count == r.before) {
+  if (!r.failed && diagnostics->count == before) {
     size_t count = (1 + csv->row_count) * csv->column_count;
     csv->cell = strut_arena_copy(&csv->arena, r.cell, count, sizeof *csv->cell);
     r.failed = !csv->cell;
   }
   strut_release(r.cell);
+  strut_release(r.line);
   if (r.failed || diagnostics->out_of_memory) return STRUT_NO_MEMORY;
-  return diagnostics->count > r.before ? STRUT_BAD_SCENE : STRUT_OK;
+  return diagnostics->count > before ? STRUT_BAD_SCENE : STRUT_OK;
 }
 
 /* ---- numbers and units ---- */

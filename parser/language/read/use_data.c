@@ -12,17 +12,12 @@ typedef struct columns {
   const strut_data_table *table;
   const strut_data_column *x, *y;
   const strut_tree *value; /* where x is named */
+  size_t count;            /* of rows without gaps */
 } columns;
 
 /* A row without gaps? */
 static bool is_whole(const columns *self, size_t row) {
   return !isnan(self->x->values[row]) && !isnan(self->y->values[row]);
-}
-
-static size_t count_whole(const columns *self) {
-  size_t count = 0;
-  for (size_t k = 0; k < self->table->row_count; k++) count += is_whole(self, k) ? 1 : 0;
-  return count;
 }
 
 /* Column x, which `value` names, or the table's time where that is NULL. False: that was reported. */
@@ -41,9 +36,9 @@ static bool read_over(strut_reader *reader, const strut_tree *value, const strut
     return strut_report_error(reader, value->place, "expected a column of data '%s', as '%s' is",
                               of->name, strut_sanitised_text(reader, y->text));
   if (!self->x) return false;
-  return count_whole(self) > 1 ||
-         strut_refuse_data(reader, self->value, self->table, self->x, SIZE_MAX,
-                           "expected two rows or more without gaps");
+  for (size_t k = 0; k < self->table->row_count; k++) self->count += is_whole(self, k);
+  return self->count > 1 || strut_refuse_data(reader, self->value, self->table, self->x, SIZE_MAX,
+                                              "expected two rows or more without gaps");
 }
 
 /* The first row whose x is not above that of the one before; SIZE_MAX: none. */
@@ -60,7 +55,7 @@ static size_t find_disorder(const columns *self, double sign) {
 /* The rows without gaps, from the last to the first if x falls; the table's own where those are all. */
 static bool take_rows(strut_reader *reader, const columns *self, bool falls, const double **x,
                       const double **y) {
-  size_t count = count_whole(self), rows = self->table->row_count, to = 0;
+  size_t count = self->count, rows = self->table->row_count, to = 0;
   *x = self->x->values, *y = self->y->values;
   if (count == rows && !falls) return true;
   double *copy = strut_keep_array(reader, 2 * count, sizeof *copy);
@@ -97,7 +92,7 @@ bool strut_read_data_signal(strut_reader *reader, const strut_tree *value, const
     return strut_refuse_data(reader, c.value, c.table, c.x, row, message);
   signal->data = name_column(reader, c.table, c.y);
   signal->over = name_column(reader, c.table, c.x);
-  signal->point_count = count_whole(&c);
+  signal->point_count = c.count;
   *found = c.y->dimension;
   return take_rows(reader, &c, false, &signal->time, &signal->value);
 }
@@ -112,32 +107,27 @@ typedef struct piece {
   size_t count[2];
 } piece;
 
-/* Adds the rows from `from` to before `to`. */
-static void sum_rows(const columns *self, size_t from, size_t to, int way, piece pieces[PIECES]) {
-  double least = self->x->least, range = self->x->most - least;
-  for (size_t k = from; k < to; k++) {
-    if (!is_whole(self, k)) continue;
-    double x = self->x->values[k];
-    piece *p = &pieces[(size_t)((x - least) / range * (PIECES - 1) + 0.5)];
-    p->x[way] += x, p->y[way] += self->y->values[k], p->count[way]++;
-  }
-}
-
 /* Sums rows by pieces; x has turned where it goes back by more than a twentieth of its range. */
-static void sum_pieces(const columns *self, piece pieces[PIECES]) {
-  double range = self->x->most - self->x->least, extreme = (double)NAN;
-  size_t from = 0, turn = 0, rows = self->table->row_count;
-  int way = 0; /* 1: unloading */
+static void sum_pieces(const columns *self, char *ways, piece pieces[PIECES]) {
+  double least = self->x->least, range = self->x->most - least, extreme = (double)NAN;
+  size_t turn = 0, rows = self->table->row_count;
+  char way = 0; /* 1: unloading */
   for (size_t k = 0; k < rows; k++) {
     if (!is_whole(self, k)) continue;
     double x = self->x->values[k], ahead = way ? extreme - x : x - extreme;
     if (ahead < -0.05 * range) {
-      sum_rows(self, from, turn + 1, way, pieces);
-      from = turn + 1, way = !way, ahead = 1.0;
+      way = !way, ahead = 1.0;
+      memset(ways + turn + 1, way, k - turn);
     }
+    ways[k] = way;
     if (!(ahead <= 0.0)) extreme = x, turn = k;
   }
-  sum_rows(self, from, rows, way, pieces);
+  for (size_t k = 0; k < rows; k++) {
+    if (!is_whole(self, k)) continue;
+    double x = self->x->values[k];
+    piece *p = &pieces[(size_t)((x - least) / range * (PIECES - 1) + 0.5)];
+    p->x[(int)ways[k]] += x, p->y[(int)ways[k]] += self->y->values[k], p->count[(int)ways[k]]++;
+  }
 }
 
 /* Means of both ways; returns their number and the largest difference between the ways. */
@@ -164,19 +154,19 @@ static size_t mean_of_ways(const piece *pieces, double *x, double *y, double *ap
 static bool take_means(strut_reader *reader, const columns *self, const strut_tree *value,
                        strut_law *law) {
   piece pieces[PIECES] = {{.count = {0}}};
-  double *x = strut_keep_array(reader, 2 * PIECES, sizeof *x);
-  double apart = 0.0;
-  if (!x) return false;
+  double *x = strut_keep_array(reader, 2 * PIECES, sizeof *x), apart = 0.0;
+  char *ways = strut_scratch_array(reader, self->table->row_count, 1);
+  if (!x || !ways) return false;
   if (!(self->x->most > self->x->least))
     return strut_refuse_data(reader, self->value, self->table, self->x, SIZE_MAX,
                              "this column is constant, expected one that varies");
-  sum_pieces(self, pieces);
+  sum_pieces(self, ways, pieces);
   law->x = x, law->force = x + PIECES;
   law->count = mean_of_ways(pieces, x, x + PIECES, &apart);
   strut_note(reader->diagnostics, value->place,
              "the law of '%s' over '%s' is a mean of %zu rows at %zu places; loading and unloading "
              "differ by up to %.2g %s",
-             law->data, law->over, count_whole(self), law->count, apart,
+             law->data, law->over, self->count, law->count, apart,
              strut_dimension_unit(self->y->dimension));
   return true;
 }
@@ -188,11 +178,10 @@ bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const st
   if (!c.y || !read_over(reader, over, value, owner, &dimensions[0], &c)) return false;
   law->data = name_column(reader, c.table, c.y);
   law->over = name_column(reader, c.table, c.x);
-  size_t count = count_whole(&c);
   bool rises = find_disorder(&c, 1.0) == SIZE_MAX, falls = find_disorder(&c, -1.0) == SIZE_MAX;
-  if ((!rises && !falls) || count > MOST_POINTS) return take_means(reader, &c, value, law);
+  if ((!rises && !falls) || c.count > MOST_POINTS) return take_means(reader, &c, value, law);
   bool fine = take_rows(reader, &c, !rises, &law->x, &law->force);
-  law->count = fine ? count : 0;
+  law->count = fine ? c.count : 0;
   return fine;
 }
 

@@ -20,7 +20,6 @@ typedef struct reading {
   strut_fields fields;           /* of its own keys */
   const strut_tree *rest;        /* a mapping of what is compared */
   const strut_data_table *table; /* of all its numbers; NULL: they are single ones */
-  double own;                    /* duration of the model's own run [s]; 0: not known */
 } reading;
 
 /* ---- parameters ---- */
@@ -77,6 +76,13 @@ static void divide(reading *self, const strut_tree *map) {
   self->rest = given ? rest.map : NULL;
 }
 
+/* Refuses number i behind a key, in the file of its table where it has one. */
+static bool refuse(const reading *self, const strut_tree *value, const strut_data_column *column,
+                   size_t i, const char *flaw) {
+  return self->table ? strut_refuse_data(self->reader, value, self->table, column, i, flaw)
+                     : strut_report_error(self->reader, value->place, "%s", flaw);
+}
+
 /* All numbers of a match are columns of one table, or single ones (NULL). */
 static bool keep_table(reading *self, const strut_tree *value, const strut_data_table *table) {
   if (self->to->count && table != self->table)
@@ -97,47 +103,51 @@ static const strut_data_column *read_column(reading *self, const strut_tree *val
   return column && keep_table(self, value, table) ? column : NULL;
 }
 
-/* The column behind one of the match's own keys, without gaps. */
-static const strut_data_column *read_at(reading *self, int key, strut_dimension dimension,
-                                        bool ascending) {
-  const strut_slot *slot = strut_slot_of(&self->fields, key);
-  const strut_data_column *column =
-      slot->state == STRUT_GIVEN ? read_column(self, slot->value, slot->key->text, &dimension)
-                                 : NULL;
-  const char *flaw = NULL;
-  size_t i = 0;
-  for (; column && i < self->to->count && !flaw; i++)
-    flaw = !isfinite(column->values[i])                        ? "a number is missing"
-           : !ascending                                        ? NULL
-           : i && !(column->values[i] > column->values[i - 1]) ? "times must ascend"
-           : self->to->count < 2                               ? "a motion needs two times or more"
-                                                               : NULL;
-  if (flaw) strut_refuse_data(self->reader, slot->value, self->table, column, i - 1, flaw);
-  if (flaw || !column) return NULL;
-  self->to->at = column->values;
-  return column;
-}
-
 /* Times in another unit than that of their column make runs that are much longer than the model's own, or do not end. */
-static void check_duration(reading *self, const strut_data_column *times) {
+static void check_duration(reading *self, const strut_slot *slot, const strut_data_column *times,
+                           double own) {
   char message[200];
   const strut_fit_match *to = self->to;
-  const strut_tree *value = strut_slot_of(&self->fields, STRUT_KEY_MATCH_TIME)->value;
   double last = to->at[to->count - 1] - (to->align.delay ? to->at[0] : 0.0);
   if (to->at[0] < 0.0 && !to->align.delay)
-    strut_report_error(self->reader, value->place,
+    strut_report_error(self->reader, slot->value->place,
                        "the times of match '%s' begin before 0, where the run starts: let 'align' "
                        "have 'delay: free'",
                        to->name);
-  if (!(last > USUAL * self->own && self->own > 0.0)) return;
+  if (!(last > USUAL * own && own > 0.0)) return;
   snprintf(message, sizeof message,
            "the runs of match '%.40s' would last %.4g s, %.3g times the model's own of %.4g s: "
            "check the unit of this column",
-           to->name, last, last / self->own, self->own);
-  if (last > MOST * self->own)
-    strut_refuse_data(self->reader, value, self->table, times, to->count - 1, message);
+           to->name, last, last / own, own);
+  if (last > MOST * own)
+    refuse(self, slot->value, times, to->count - 1, message);
   else
-    strut_note(self->reader->diagnostics, value->place, "%s", message);
+    strut_note(self->reader->diagnostics, slot->value->place, "%s", message);
+}
+
+/* The times of a motion, ascending, or the displacements of a curve, without gaps. False: that was reported. */
+static bool read_axis(reading *self, double own) {
+  strut_fit_match *to = self->to;
+  bool motion = to->kind == STRUT_FIT_MOTION;
+  const strut_dimension dimensions[] = {STRUT_DIM_LENGTH, STRUT_DIM_TIME};
+  const strut_slot *slot =
+      strut_slot_of(&self->fields, motion ? STRUT_KEY_MATCH_TIME : STRUT_KEY_MATCH_DISPLACEMENT);
+  if (!motion && to->kind != STRUT_FIT_CURVE) return true;
+  const strut_data_column *column =
+      slot->state == STRUT_GIVEN
+          ? read_column(self, slot->value, slot->key->text, &dimensions[motion])
+          : NULL;
+  for (size_t i = 0; column && i < to->count; i++) {
+    const double *at = &column->values[i];
+    const char *flaw = !isfinite(*at)                   ? "a number is missing"
+                       : motion && i && !(*at > at[-1]) ? "times must ascend"
+                       : motion && to->count < 2        ? "a motion needs two times or more"
+                                                        : NULL;
+    if (flaw) return refuse(self, slot->value, column, i, flaw);
+  }
+  if (column) to->at = column->values;
+  if (column && motion) check_duration(self, slot, column, own);
+  return column != NULL;
 }
 
 static void read_noise(reading *self) {
@@ -153,53 +163,40 @@ static void read_noise(reading *self) {
                        self->to->name);
 }
 
-/* A noise without unit is in that of the numbers, which must have one in common. */
-static bool check_noise(reading *self, const strut_tree *value, const char *unit) {
-  strut_fit_match *to = self->to;
-  if (!to->noise_unit) to->noise_unit = unit;
-  return !(to->noise > 0.0) || strcmp(to->noise_unit, unit) == 0 ||
-         strut_report_error(self->reader, value->place,
-                            "'noise' of match '%s' is in %s, this in %s: give numbers of another "
-                            "dimension a match of their own",
-                            to->name, to->noise_unit, unit);
-}
-
-/* A number of its own. */
-static bool read_number(reading *self, const strut_tree *value, strut_fit_series *series) {
+/* A column of the match's table, or of a number of its own; NULL: that was reported. */
+static const strut_data_column *read_numbers(reading *self, const strut_tree *value,
+                                             const char *of) {
+  bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted && !self->to->at &&
+               strpbrk(value->text, "0123456789+-") == value->text;
+  const strut_data_column *column = plain ? NULL : read_column(self, value, of, NULL);
+  if (column && column->gap_count == self->to->count)
+    return refuse(self, value, column, 0, "there are no numbers") ? column : NULL;
+  if (!plain) return column;
   strut_quantity q;
   double *number = strut_study_allocate(self->study, 1, sizeof *number);
-  if (!number || !strut_read_quantity(self->reader, value, series->of, self->owner, &q) ||
+  strut_data_column *own = strut_study_allocate(self->study, 1, sizeof *own);
+  if (!number || !own || !strut_read_quantity(self->reader, value, of, self->owner, &q) ||
       !keep_table(self, value, NULL))
-    return false;
+    return NULL;
   *number = q.value;
-  series->measured = number;
-  series->unit = q.bare ? "1" : strut_dimension_unit(q.dimension);
-  return true;
+  *own = (strut_data_column){.unit = q.bare ? "1" : "", .dimension = q.dimension, .values = number};
+  return own;
 }
 
-/* A number, or a column of the match's table. */
-static bool read_numbers(reading *self, const strut_tree *value, strut_fit_series *series) {
-  bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted &&
-               strpbrk(value->text, "0123456789+-") == value->text;
-  if (plain && !self->to->at) return read_number(self, value, series);
-  const strut_data_column *column = series->column = read_column(self, value, series->of, NULL);
-  if (!column) return false;
-  series->measured = column->values;
-  series->weights = column->weights;
-  series->unit = strcmp(column->unit, "1") == 0 ? "1" : strut_dimension_unit(column->dimension);
-  return column->gap_count < self->to->count ||
-         strut_refuse_data(self->reader, value, self->table, column, 0, "there are no numbers");
-}
-
-/* Squares of residuals must not overflow. */
+/* A noise without unit is in that of the numbers, which must have one in common, and finite squares in the sum. */
 static bool check_numbers(reading *self, const strut_tree *value, const strut_fit_series *series) {
-  static const char flaw[] = "a number this large has no finite square in the sum of a fit";
-  double noise = self->to->noise > 0.0 ? fmin(self->to->noise, 1.0) : 1.0;
-  for (size_t i = 0; i < self->to->count; i++)
-    if (fabs(series->measured[i]) > STRUT_DATA_MOST_NUMBER * noise)
-      return series->column
-                 ? strut_refuse_data(self->reader, value, self->table, series->column, i, flaw)
-                 : strut_report_error(self->reader, value->place, flaw);
+  strut_fit_match *to = self->to;
+  double noise = to->noise > 0.0 ? fmin(to->noise, 1.0) : 1.0;
+  if (!to->noise_unit) to->noise_unit = series->unit;
+  if (to->noise > 0.0 && strcmp(to->noise_unit, series->unit) != 0)
+    return strut_report_error(self->reader, value->place,
+                              "'noise' of match '%s' is in %s, this in %s: give numbers of another "
+                              "dimension a match of their own",
+                              to->name, to->noise_unit, series->unit);
+  for (size_t i = 0; i < to->count; i++)
+    if (fabs(series->column->values[i]) > STRUT_DATA_MOST_NUMBER * noise)
+      return refuse(self, value, series->column, i,
+                    "a number this large has no finite square in the sum of a fit");
   return true;
 }
 
@@ -207,9 +204,10 @@ static void add_series(reading *self, const strut_tree *key) {
   strut_fit_match *to = self->to;
   strut_fit_series *series = &to->series[to->series_count];
   *series = (strut_fit_series){.of = key->text, .place = {key->place.line, key->place.column}};
-  if (!read_numbers(self, key->next, series) || !check_noise(self, key->next, series->unit) ||
-      !check_numbers(self, key->next, series))
-    return;
+  const strut_data_column *column = series->column = read_numbers(self, key->next, key->text);
+  if (!column) return;
+  series->unit = strcmp(column->unit, "1") == 0 ? "1" : strut_dimension_unit(column->dimension);
+  if (!check_numbers(self, key->next, series)) return;
   to->series_count++;
   bool moves = to->kind == STRUT_FIT_MOTION || to->kind == STRUT_FIT_REST;
   strut_study_file *file = self->study->file;
@@ -220,9 +218,7 @@ static void add_series(reading *self, const strut_tree *key) {
 /* The other coordinates of places, which were not measured but turn with those that were. */
 static void add_partners(reading *self) {
   strut_fit_match *to = self->to;
-  double *gaps = strut_study_allocate(self->study, to->count, sizeof *gaps);
-  for (size_t i = 0; gaps && i < to->count; i++) gaps[i] = (double)NAN;
-  for (const strut_tree *key = self->rest->first; key && gaps; key = key->next->next) {
+  for (const strut_tree *key = self->rest->first; key; key = key->next->next) {
     size_t length = strlen(key->text);
     char *text = strut_arena_text(&self->study->file->arena, key->text, length);
     char axis = text && length > 2 && text[length - 2] == '.' ? text[length - 1] : '\0';
@@ -232,77 +228,65 @@ static void add_partners(reading *self) {
     strut_tree other = *key;
     other.text = text;
     to->series[to->series_count++] =
-        (strut_fit_series){.of = text,
-                           .place = {key->place.line, key->place.column},
-                           .unit = "m",
-                           .measured = gaps,
-                           .empty = true};
+        (strut_fit_series){.of = text, .place = {key->place.line, key->place.column}, .unit = "m"};
     if (!strut_study_measure(self->study->file, &other)) self->reader->out_of_memory = true;
   }
 }
 
-/* What kind of match it is, by the keys that it has. */
-static void choose_kind(reading *self) {
+/* What kind of match it is, by the keys that it has; and what such a match cannot have, or lacks. */
+static void choose_kind(reading *self, const strut_tree *key) {
+  strut_reader *reader = self->reader;
   strut_fit_match *to = self->to;
   bool over_time = strut_mentions(&self->fields, STRUT_KEY_MATCH_TIME);
   bool curve = strut_mentions(&self->fields, STRUT_KEY_MATCH_DISPLACEMENT);
   bool table = strut_mentions(&self->fields, STRUT_KEY_MATCH_COMPUTE);
   const strut_slot *align = strut_slot_of(&self->fields, STRUT_KEY_MATCH_ALIGN);
+  const strut_tree *first = self->rest->first;
   to->kind = over_time ? STRUT_FIT_MOTION
              : curve   ? STRUT_FIT_CURVE
              : table   ? STRUT_FIT_TABLE
                        : STRUT_FIT_REST;
   if (curve) to->compute = STRUT_COMPUTE_PATH;
   if (over_time + curve + table > 1)
-    strut_report_error(self->reader, self->rest->place,
+    strut_report_error(reader, self->rest->place,
                        "match '%s' can have only one of 'time', 'displacement' and 'compute'",
                        to->name);
   if (align->state == STRUT_GIVEN && (curve || table))
-    strut_report_error(self->reader, align->key->place,
-                       "'align' of match '%s' is for motions and shapes", to->name);
+    strut_report_error(reader, align->key->place, "'align' of match '%s' is for motions and shapes",
+                       to->name);
   if (to->align.delay && !over_time)
-    strut_report_error(self->reader, align->value->place, "a delay needs the 'time' of a motion");
+    strut_report_error(reader, align->value->place, "a delay needs the 'time' of a motion");
+  curve = to->kind == STRUT_FIT_CURVE;
+  if (curve && !strut_mentions(&self->fields, STRUT_KEY_MATCH_FORCE))
+    strut_report_error(reader, key->place, "match '%s' of a displacement lacks 'force'", to->name);
+  if (curve && first)
+    strut_report_error(reader, first->place,
+                       "a match of a displacement compares its 'force' alone, not '%s'",
+                       strut_sanitised_text(reader, first->text));
+  if (!curve && !first)
+    strut_report_error(reader, key->place,
+                       "match '%s' compares nothing: add what the model has, such as "
+                       "'n1.x: film.x'",
+                       key->text);
 }
 
-/* The times or displacements of a match. False: what should be there is not. */
-static bool read_axis(reading *self) {
-  strut_fit_kind kind = self->to->kind;
-  const strut_data_column *times = NULL;
-  if (kind == STRUT_FIT_CURVE) read_at(self, STRUT_KEY_MATCH_DISPLACEMENT, STRUT_DIM_LENGTH, false);
-  if (kind == STRUT_FIT_MOTION) times = read_at(self, STRUT_KEY_MATCH_TIME, STRUT_DIM_TIME, true);
-  if (times) check_duration(self, times);
-  return self->to->at || kind == STRUT_FIT_TABLE || kind == STRUT_FIT_REST;
-}
-
-/* Returns the mapping of what it sets, or NULL. */
+/* `own`: how long the model's own run lasts [s]; 0: not known. Returns the mapping of what it sets, or NULL. */
 static const strut_tree *read_match(strut_study_reader *study, const strut_tree *key, double own,
                                     strut_fit_match *to) {
   strut_reader *r = study->reader;
-  reading self = {.study = study, .reader = r, .to = to, .owner = {"match", key->text}, .own = own};
+  reading self = {.study = study, .reader = r, .to = to, .owner = {"match", key->text}};
   strut_read_name(r, key, "match");
   *to = (strut_fit_match){.name = key->text};
   divide(&self, key->next);
   if (!self.rest) return NULL;
-  const strut_tree *first = self.rest->first;
   const strut_slot *force = strut_slot_of(&self.fields, STRUT_KEY_MATCH_FORCE);
   to->series = strut_study_allocate(study, 2 * (size_t)self.rest->count + 1, sizeof *to->series);
-  choose_kind(&self);
+  choose_kind(&self, key);
   read_noise(&self);
-  bool curve = to->kind == STRUT_FIT_CURVE;
-  if (curve && force->state == STRUT_ABSENT)
-    strut_report_error(r, key->place, "match '%s' of a displacement lacks 'force'", to->name);
-  if (curve && first)
-    strut_report_error(r, first->place,
-                       "a match of a displacement compares its 'force' alone, not '%s'",
-                       strut_sanitised_text(r, first->text));
-  if (!curve && !first)
-    strut_report_error(r, key->place,
-                       "match '%s' compares nothing: add what the model has, such as "
-                       "'n1.x: film.x'",
-                       key->text);
-  if (!to->series || !read_axis(&self)) return NULL;
-  if (curve && force->state == STRUT_GIVEN) add_series(&self, force->key);
-  for (; first && !curve; first = first->next->next) add_series(&self, first);
+  if (!to->series || !read_axis(&self, own)) return NULL;
+  if (to->kind == STRUT_FIT_CURVE && force->state == STRUT_GIVEN) add_series(&self, force->key);
+  const strut_tree *of = to->kind == STRUT_FIT_CURVE ? NULL : self.rest->first;
+  for (; of; of = of->next->next) add_series(&self, of);
   if (to->align.rotate && to->series_count) add_partners(&self);
   return strut_given(&self.fields, STRUT_KEY_MATCH_SET);
 }
@@ -402,8 +386,7 @@ static void refuse_twice(strut_study_reader *reader, const strut_fit_match *a,
   for (size_t s = 0; s < a->series_count; s++)
     for (size_t k = 0; k < b->series_count; k++) {
       const strut_fit_series *first = &b->series[k], *second = &a->series[s];
-      if (first != second && !second->empty && first->measured == second->measured &&
-          (a != b || k < s))
+      if (second->column && first->column == second->column && (a != b || k < s))
         strut_report_error(reader->reader,
                            strut_place_at(second->place.line, second->place.column, 1),
                            "the numbers of '%s' are compared already, with '%s' of match '%s'",
