@@ -45,12 +45,10 @@ static bool create_layout(const strut_model *model, strut_channels wanted,
 /* Where each number of a row comes from. */
 static bool find_columns(strut_recording *recording) {
   const strut_model *model = recording->instant.model;
-  recording->column =
-      strut_arena_allocate(&recording->arena, recording->layout.width, sizeof *recording->column);
-  recording->observe =
-      strut_arena_allocate(&recording->arena, recording->layout.width, sizeof *recording->observe);
-  for (size_t k = 0; k < recording->layout.channel_count && recording->column && recording->observe;
-       k++) {
+  const size_t width = recording->layout.width;
+  bool ready = STRUT_ALLOCATE(&recording->arena, STRUT_NEW(recording->column, width),
+                              STRUT_NEW(recording->observe, width));
+  for (size_t k = 0; k < recording->layout.channel_count && ready; k++) {
     const strut_record_channel *channel = &recording->channel[k];
     const strut_channel_row *row = strut_channel_row_of(channel->id);
     int32_t near = 0;
@@ -67,7 +65,7 @@ static bool find_columns(strut_recording *recording) {
       recording->column[to] = column;
     }
   }
-  return recording->column && recording->observe;
+  return ready;
 }
 
 static strut_channels requested_channels(const strut_experiment *experiment,

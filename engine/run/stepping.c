@@ -50,10 +50,10 @@ static strut_status inputs_create(strut_setup *setup, const strut_model *model, 
                           .nodes = scene->node_count};
   in->first_signal = (int32_t)(scene->signal_count - scene->actuator_count);
   in->count = in->members + 2 * in->actuators + 2 * in->nodes;
-  in->given = strut_arena_allocate(&in->arena, in->count, sizeof *in->given);
-  in->applied = strut_arena_allocate(&in->arena, in->count, sizeof *in->applied);
-  in->points = strut_arena_allocate(&in->arena, 2 + 2 * in->actuators, sizeof *in->points);
-  if (!in->given || !in->applied || !in->points) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(&in->arena, STRUT_NEW(in->given, in->count),
+                      STRUT_NEW(in->applied, in->count),
+                      STRUT_NEW(in->points, 2 + 2 * in->actuators)))
+    return strut_no_memory(error, "");
   in->rates = in->applied + in->count - in->actuators;
   for (size_t i = 0; i < in->members; i++) in->given[i] = model->members.rest[i];
   for (size_t i = 0; i < in->actuators; i++) in->given[in->members + i] = (double)NAN;
@@ -66,9 +66,7 @@ static bool add_loads(stepping_inputs *in, strut_model *model) {
   strut_scene *scene = in->scene;
   size_t before = scene->load_count, length = (size_t)model->length;
   strut_load *loads = strut_arena_allocate(&scene->arena, before + in->nodes, sizeof *loads);
-  in->constant = strut_arena_allocate(&in->arena, length, sizeof *in->constant);
-  in->constant_base = strut_arena_allocate(&in->arena, length, sizeof *in->constant_base);
-  if (!loads || !in->constant || !in->constant_base) return false;
+  if (!loads || !STRUT_NUMBERS(&in->arena, length, &in->constant, &in->constant_base)) return false;
   if (before) memcpy(loads, scene->loads, before * sizeof *loads);
   for (size_t i = 0; i < in->nodes; i++)
     loads[before + i] = (strut_load){.name = "", .node = (int32_t)i, .signal = -1};

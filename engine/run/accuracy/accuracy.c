@@ -244,9 +244,9 @@ strut_status strut_track_create(const strut_model *model, size_t capacity, strut
   size_t both = 2 * (size_t)model->node_count;
   *track = (strut_track){.model = model, .capacity = capacity};
   track->sink = (strut_sink){track, begin_track, record_track_rows, NULL, STRUT_CHANNEL_POSITION};
-  track->time = strut_arena_allocate(arena, capacity, sizeof(double));
-  track->position = strut_arena_allocate(arena, capacity * both, sizeof(double));
-  return track->time && track->position ? STRUT_OK : STRUT_NO_MEMORY;
+  bool ready = STRUT_ALLOCATE(arena, STRUT_NEW(track->time, capacity),
+                              STRUT_NEW(track->position, capacity * both));
+  return ready ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 /* Mean position along the ground at moment k; 0 where a support holds it or there is no ground. */
