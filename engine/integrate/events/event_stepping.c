@@ -45,10 +45,9 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
   strut_event_view *view = strut_arena_allocate(arena, 1, sizeof *view);
   if (!view) return false;
   stepper->view = view;
-  bool failed = !STRUT_NUMBERS(arena, model->length, &view->q, &view->v) ||
-                !STRUT_NUMBERS(arena, strut_history_count(model), &view->memory);
-  strut_step_end_create(model, arena, false, &view->instant, &failed);
-  return !failed;
+  return STRUT_NUMBERS(arena, model->length, &view->q, &view->v) &&
+         STRUT_NUMBERS(arena, strut_history_count(model), &view->memory) &&
+         strut_step_end_create(model, arena, false, &view->instant);
 }
 
 /* Contact forces in the present modes at an instant within a step. */
