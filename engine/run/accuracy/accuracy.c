@@ -7,6 +7,7 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
+#include "engine/run/orbit/orbit.h"
 #include "engine/run/settle.h"
 #include "engine/scene/signal_program.h"
 
@@ -249,17 +250,10 @@ strut_status strut_track_create(const strut_model *model, size_t capacity, strut
   return ready ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
-/* Mean position along the ground at moment k; 0 where a support holds it or there is no ground. */
+/* Mean position along the ground at moment k; 0 where the structure cannot travel. */
 static double mean_along_ground(const strut_track *track, size_t k) {
-  const strut_model *model = track->model;
-  const double *q = track->position + 2 * k * (size_t)model->node_count;
-  double sum = 0.0;
-  if (!strut_contacts_allow_travel(&model->contacts)) return 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) {
-    if (model->fixed[2 * i] || model->fixed[2 * i + 1]) return 0.0;
-    sum += q[2 * i] * model->contacts.tangent[0] + q[2 * i + 1] * model->contacts.tangent[1];
-  }
-  return sum / model->node_count;
+  const double *positions = track->position + 2 * k * (size_t)track->model->node_count;
+  return strut_model_travels(track->model) ? strut_mean_along_ground(track->model, positions) : 0.0;
 }
 
 double strut_track_distance(const strut_track *track, const strut_track *second, double period) {
