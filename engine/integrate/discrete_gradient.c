@@ -15,19 +15,14 @@
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
                                     strut_discrete_gradient *step) {
   size_t slots = (size_t)model->members.slots;
-  double **all[] = {&step->length0, &step->rest0,   &step->rest_rate, &step->sum[0],
-                    &step->sum[1],  &step->lengths, &step->tension,   &step->slope};
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-    if (!(*all[i] = strut_arena_allocate(&state->arena, slots, sizeof(double)))) return false;
+  if (!STRUT_NUMBERS(&state->arena, slots, &step->length0, &step->rest0, &step->rest_rate,
+                     &step->sum[0], &step->sum[1], &step->lengths, &step->tension, &step->slope) ||
+      !STRUT_NUMBERS(&state->arena, model->length, &step->middle, &step->end_velocity) ||
+      !STRUT_NUMBERS(&state->arena, model->elements.count, &step->strain0, &step->energy0,
+                     &step->element_slope))
+    return false;
   memcpy(step->rest0, model->members.rest, slots * sizeof(double));
-  size_t elements = (size_t)model->elements.count;
-  step->middle = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
-  step->end_velocity = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
-  step->strain0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
-  step->energy0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
-  step->element_slope = strut_arena_allocate(&state->arena, elements, sizeof(double));
-  return step->middle && step->end_velocity && step->strain0 && step->energy0 &&
-         step->element_slope;
+  return true;
 }
 
 void strut_discrete_gradient_begin(const strut_model *model, const strut_state *state,

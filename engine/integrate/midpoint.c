@@ -57,12 +57,10 @@ static bool make_pattern(const strut_model *model, const int32_t *row_of, strut_
 static bool make_members(const strut_model *model, strut_arena *arena,
                          strut_midpoint_matrix *matrix) {
   const strut_member_table *members = &model->members;
-  matrix->lightness =
-      strut_arena_allocate(arena, (size_t)members->count, sizeof *matrix->lightness);
-  matrix->direction =
-      strut_arena_allocate(arena, (size_t)members->count, sizeof *matrix->direction);
-  matrix->slope = strut_arena_allocate(arena, (size_t)members->count, sizeof *matrix->slope);
-  if (!matrix->lightness || !matrix->direction || !matrix->slope) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(matrix->lightness, members->count),
+                      STRUT_NEW(matrix->direction, members->count),
+                      STRUT_NEW(matrix->slope, members->count)))
+    return false;
   for (int32_t j = 0; j < members->count; j++)
     for (int e = 0; e < 2; e++) {
       uint32_t at = e ? members->to[j] : members->from[j];
@@ -75,11 +73,11 @@ static bool make_members(const strut_model *model, strut_arena *arena,
 /* In the arena; false: out of memory. */
 static bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
                                          strut_midpoint_matrix *matrix) {
-  size_t both = (size_t)model->length, entries_most = strut_tangent_entries(model, false);
-  int32_t *row_of = strut_arena_allocate(arena, both, sizeof *row_of);
-  matrix->coordinate = strut_arena_allocate(arena, both, sizeof *matrix->coordinate);
-  matrix->place = strut_arena_allocate(arena, entries_most, sizeof *matrix->place);
-  if (!row_of || !matrix->coordinate || !matrix->place) return false;
+  int32_t *row_of;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(row_of, model->length),
+                      STRUT_NEW(matrix->coordinate, model->length),
+                      STRUT_NEW(matrix->place, strut_tangent_entries(model, false))))
+    return false;
   matrix->n = strut_number_free(model, NULL, row_of, matrix->coordinate);
   if (matrix->n == 0) return true;
   if (!make_members(model, arena, matrix)) return false;
@@ -250,23 +248,15 @@ static void *midpoint_create(const strut_model *model, strut_state *state,
   (void)settings;
   strut_arena *arena = &state->arena;
   midpoint_workspace *workspace = strut_arena_allocate(arena, 1, sizeof *workspace);
-  size_t both = (size_t)model->length;
   if (!workspace || !strut_discrete_gradient_create(model, state, &workspace->step) ||
-      !strut_midpoint_matrix_create(model, arena, &workspace->matrix))
+      !strut_midpoint_matrix_create(model, arena, &workspace->matrix) ||
+      !STRUT_NUMBERS(arena, model->length, &workspace->u, &workspace->q1, &workspace->before[0],
+                     &workspace->before[1], &workspace->grid[0], &workspace->grid[1], &workspace->x,
+                     &workspace->residual) ||
+      !STRUT_NUMBERS(arena, model->members.count, &workspace->held) ||
+      !STRUT_NUMBERS(arena, model->support_motion.count, &workspace->moved[0], &workspace->moved[1],
+                     &workspace->moved[2]))
     return NULL;
-  double **all[] = {&workspace->u,         &workspace->q1,      &workspace->before[0],
-                    &workspace->before[1], &workspace->grid[0], &workspace->grid[1],
-                    &workspace->x,         &workspace->residual};
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-    if (!(*all[i] = strut_arena_allocate(arena, both, sizeof(double)))) return NULL;
-  workspace->held =
-      strut_arena_allocate(arena, (size_t)model->members.count, sizeof *workspace->held);
-  if (!workspace->held) return NULL;
-  for (int k = 0; k < 3; k++) {
-    size_t count = (size_t)model->support_motion.count;
-    workspace->moved[k] = strut_arena_allocate(arena, count, sizeof(double));
-    if (!workspace->moved[k]) return NULL;
-  }
   workspace->stiffest = stiffest_of(model);
   workspace->factor_step = -1.0;
   return workspace;

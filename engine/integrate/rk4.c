@@ -14,15 +14,11 @@ static void *rk4_create(const strut_model *model, strut_state *state,
                         const strut_integrator_settings *settings) {
   (void)settings;
   rk4_workspace *self = strut_arena_allocate(&state->arena, 1, sizeof *self);
-  if (!self) return NULL;
   if ((model->terms & STRUT_TERM_RIGID) && !strut_rigid_create(model, state)) return NULL;
-  double **all[] = {&self->q,    &self->v[1], &self->v[2], &self->v[3],
-                    &self->a[0], &self->a[1], &self->a[2], &self->a[3]};
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-    *all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
-    if (!*all[i]) return NULL;
-  }
-  return self;
+  bool ready =
+      self && STRUT_NUMBERS(&state->arena, model->length, &self->q, &self->v[1], &self->v[2],
+                            &self->v[3], &self->a[0], &self->a[1], &self->a[2], &self->a[3]);
+  return ready ? self : NULL;
 }
 
 /*

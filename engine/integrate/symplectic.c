@@ -66,12 +66,9 @@ static void *verlet_create(const strut_model *model, strut_state *state,
                            const strut_integrator_settings *settings) {
   (void)settings;
   verlet_workspace *self = strut_arena_allocate(&state->arena, 1, sizeof *self);
-  if (!self) return NULL;
-  double **all[] = {&self->a, &self->next, &self->predicted};
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-    if (!(*all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double))))
-      return NULL;
-  return self;
+  bool ready =
+      self && STRUT_NUMBERS(&state->arena, model->length, &self->a, &self->next, &self->predicted);
+  return ready ? self : NULL;
 }
 
 static void verlet_restart(const strut_model *model, strut_state *state, void *workspace,

@@ -157,6 +157,13 @@ static inline bool strut_contacts_allow_travel(const strut_contact_table *contac
   return contacts->count > 0 && (!contacts->surface || contacts->parallel);
 }
 
+/** Does it do so without anything that holds a node? */
+static inline bool strut_model_travels(const strut_model *model) {
+  bool travels = strut_contacts_allow_travel(&model->contacts);
+  for (int32_t i = 0; i < 2 * model->node_count; i++) travels = travels && !model->fixed[i];
+  return travels;
+}
+
 /** Speed of the belt of contact i [m/s]. */
 static inline double strut_contact_belt(const strut_contact_table *contacts, int32_t i) {
   assert(i >= 0 && i < contacts->count);

@@ -42,7 +42,8 @@ static void add_name(strut_buffer *header, const strut_record_channel *channel, 
   bool whole = strut_channel_is_whole(row);
   strut_buffer_add(header, ",");
   strut_csv_add_text(header, "%s%s%s [%s]", whole ? "" : channel->item_names[item],
-                     whole ? "" : ".", row->column_names[component], channel->unit);
+                     whole ? "" : ".", row->column_names[component],
+                     channel->item_units ? channel->item_units[item] : channel->unit);
 }
 
 static bool is_in_table(const strut_record_channel *channel, int owner) {

@@ -16,12 +16,13 @@
 typedef struct strut_record_channel {
   strut_channels id;
   const char *name; /* "position", "velocity", "length", "force", "contact", "angle", ... */
-  const char *unit; /* "m", "m/s", "m", "N", "N", "rad", ... */
+  const char *unit; /* "m", "m/s", "m", "N", "N", "rad", ...; "SI": each item has its own */
   size_t items, components, offset;
   const char *const
       *item_names; /* (items) of nodes, members, hinges or cells; {"total"} for energy */
   const char *const *component_names; /* (components) {"x", "y"}; {""} for a single one;
                                          contact: {"normal", "friction"}; energy: {"kinetic", ...} */
+  const char *const *item_units;      /* (items); NULL: the same of all */
 } strut_record_channel;
 
 /** The columns of a row: width doubles, the first is the time [s]. */

@@ -18,6 +18,14 @@ static const char *const *item_names(const strut_model *model, const strut_chann
   return names;
 }
 
+static const char *const *item_units(const strut_model *model, const strut_channel_row *row,
+                                     size_t count, strut_arena *arena) {
+  const char **units = strut_arena_allocate(arena, count, sizeof *units);
+  for (size_t i = 0; units && i < count; i++)
+    units[i] = strut_channel_item_unit(row, model->scene, i);
+  return units;
+}
+
 static bool create_layout(const strut_model *model, strut_channels wanted,
                           strut_recording *recording) {
   if (!strut_instant_create(model, &recording->arena, &recording->instant)) return false;
@@ -35,7 +43,8 @@ static bool create_layout(const strut_model *model, strut_channels wanted,
                                       .component_names = row->component_names,
                                       .offset = recording->layout.width};
     channel->item_names = item_names(model, row, items, &recording->arena);
-    if (!channel->item_names) return false;
+    channel->item_units = item_units(model, row, items, &recording->arena);
+    if (!channel->item_names || !channel->item_units) return false;
     recording->layout.width += channel->items * channel->components;
   }
   recording->layout.channels = recording->channel;
@@ -45,12 +54,10 @@ static bool create_layout(const strut_model *model, strut_channels wanted,
 /* Where each number of a row comes from. */
 static bool find_columns(strut_recording *recording) {
   const strut_model *model = recording->instant.model;
-  recording->column =
-      strut_arena_allocate(&recording->arena, recording->layout.width, sizeof *recording->column);
-  recording->observe =
-      strut_arena_allocate(&recording->arena, recording->layout.width, sizeof *recording->observe);
-  for (size_t k = 0; k < recording->layout.channel_count && recording->column && recording->observe;
-       k++) {
+  const size_t width = recording->layout.width;
+  bool ready = STRUT_ALLOCATE(&recording->arena, STRUT_NEW(recording->column, width),
+                              STRUT_NEW(recording->observe, width));
+  for (size_t k = 0; k < recording->layout.channel_count && ready; k++) {
     const strut_record_channel *channel = &recording->channel[k];
     const strut_channel_row *row = strut_channel_row_of(channel->id);
     int32_t near = 0;
@@ -67,7 +74,7 @@ static bool find_columns(strut_recording *recording) {
       recording->column[to] = column;
     }
   }
-  return recording->column && recording->observe;
+  return ready;
 }
 
 static strut_channels requested_channels(const strut_experiment *experiment,

@@ -79,21 +79,16 @@ static strut_status allocate_summary(strut_run *run) {
   strut_summary *summary = run->summary;
   const strut_experiment *experiment = run->experiment;
   size_t contacts = (size_t)run->model->contacts.count;
-  summary->end.node_names = strut_allocate(scene->node_count, sizeof *summary->end.node_names);
-  summary->end.positions = strut_allocate(2 * scene->node_count, sizeof *summary->end.positions);
-  summary->end.contacts = strut_allocate(contacts, sizeof *summary->end.contacts);
-  summary->end.hinges = strut_allocate(scene->hinge_count, sizeof *summary->end.hinges);
-  summary->end.cells = strut_allocate(scene->cell_count, sizeof *summary->end.cells);
-  summary->end.breaks =
-      strut_allocate((size_t)run->model->elements.breakable_count, sizeof *summary->end.breaks);
-  summary->end.jumps =
-      strut_allocate((size_t)run->model->elements.history_count, sizeof *summary->end.jumps);
-  if (experiment->quantity_count)
-    summary->measured = strut_allocate(experiment->quantity_count, sizeof *summary->measured);
-  if (!summary->end.node_names || !summary->end.positions || !summary->end.contacts ||
-      !summary->end.hinges || !summary->end.cells || !summary->end.breaks || !summary->end.jumps ||
-      (experiment->quantity_count && !summary->measured))
+  if (!STRUT_ALLOCATE(&summary->arena, STRUT_NEW(summary->end.node_names, scene->node_count),
+                      STRUT_NEW(summary->end.positions, 2 * scene->node_count),
+                      STRUT_NEW(summary->end.contacts, contacts),
+                      STRUT_NEW(summary->end.hinges, scene->hinge_count),
+                      STRUT_NEW(summary->end.cells, scene->cell_count),
+                      STRUT_NEW(summary->end.breaks, run->model->elements.breakable_count),
+                      STRUT_NEW(summary->end.jumps, run->model->elements.history_count),
+                      STRUT_NEW(summary->measured, experiment->quantity_count)))
     return strut_no_memory(run->error, "for the model");
+  if (!experiment->quantity_count) summary->measured = NULL;
   summary->end.node_count = scene->node_count;
   summary->end.contact_count = contacts;
   summary->end.hinge_count = scene->hinge_count;

@@ -50,10 +50,10 @@ static strut_status inputs_create(strut_setup *setup, const strut_model *model, 
                           .nodes = scene->node_count};
   in->first_signal = (int32_t)(scene->signal_count - scene->actuator_count);
   in->count = in->members + 2 * in->actuators + 2 * in->nodes;
-  in->given = strut_arena_allocate(&in->arena, in->count, sizeof *in->given);
-  in->applied = strut_arena_allocate(&in->arena, in->count, sizeof *in->applied);
-  in->points = strut_arena_allocate(&in->arena, 2 + 2 * in->actuators, sizeof *in->points);
-  if (!in->given || !in->applied || !in->points) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(&in->arena, STRUT_NEW(in->given, in->count),
+                      STRUT_NEW(in->applied, in->count),
+                      STRUT_NEW(in->points, 2 + 2 * in->actuators)))
+    return strut_no_memory(error, "");
   in->rates = in->applied + in->count - in->actuators;
   for (size_t i = 0; i < in->members; i++) in->given[i] = model->members.rest[i];
   for (size_t i = 0; i < in->actuators; i++) in->given[in->members + i] = (double)NAN;
@@ -66,9 +66,7 @@ static bool add_loads(stepping_inputs *in, strut_model *model) {
   strut_scene *scene = in->scene;
   size_t before = scene->load_count, length = (size_t)model->length;
   strut_load *loads = strut_arena_allocate(&scene->arena, before + in->nodes, sizeof *loads);
-  in->constant = strut_arena_allocate(&in->arena, length, sizeof *in->constant);
-  in->constant_base = strut_arena_allocate(&in->arena, length, sizeof *in->constant_base);
-  if (!loads || !in->constant || !in->constant_base) return false;
+  if (!loads || !STRUT_NUMBERS(&in->arena, length, &in->constant, &in->constant_base)) return false;
   if (before) memcpy(loads, scene->loads, before * sizeof *loads);
   for (size_t i = 0; i < in->nodes; i++)
     loads[before + i] = (strut_load){.name = "", .node = (int32_t)i, .signal = -1};
@@ -256,8 +254,15 @@ struct strut_stepping_snapshot {
   int64_t stop;
   strut_status status;
   double input_work;
-  void *inputs, *arena, *measure; /* strut_arena_store: with the state's, with what is measured */
+  void *stored[3]; /* strut_arena_store of each of list_arenas */
 };
+
+/* What is in the inputs, in the state, and measured. */
+static void list_arenas(strut_stepping *stepping, strut_arena *arenas[3]) {
+  arenas[0] = &stepping->inputs.arena;
+  arenas[1] = &stepping->run.state->arena;
+  arenas[2] = &stepping->run.measure.arena;
+}
 
 static uint64_t next_identity(void) {
   static atomic_uint_fast64_t last;
@@ -425,7 +430,7 @@ int64_t strut_stepping_recorded(const strut_stepping *stepping) {
 strut_stepping_snapshot *strut_stepping_store(strut_stepping *stepping) {
   strut_stepping_snapshot *snapshot = strut_allocate(1, sizeof *snapshot);
   const strut_state *state = stepping->run.state;
-  const strut_arena *measured = &stepping->run.measure.arena;
+  strut_arena *arenas[3];
   if (!snapshot || strut_recording_flush(&stepping->run.recording, NULL) != STRUT_OK)
     return strut_release(snapshot), NULL;
   *snapshot = (strut_stepping_snapshot){.identity = stepping->identity,
@@ -434,16 +439,12 @@ strut_stepping_snapshot *strut_stepping_store(strut_stepping *stepping) {
                                         .stop = stepping->stop,
                                         .status = stepping->status,
                                         .input_work = stepping->inputs.work};
-  snapshot->arena = strut_allocate(strut_arena_stored_size(&state->arena), 1);
-  snapshot->measure = strut_allocate(strut_arena_stored_size(measured), 1);
-  snapshot->inputs = strut_allocate(strut_arena_stored_size(&stepping->inputs.arena), 1);
-  if (!snapshot->arena || !snapshot->measure || !snapshot->inputs) {
-    strut_stepping_snapshot_free(snapshot);
-    return NULL;
+  list_arenas(stepping, arenas);
+  for (int k = 0; k < 3; k++) {
+    snapshot->stored[k] = strut_allocate(strut_arena_stored_size(arenas[k]), 1);
+    if (!snapshot->stored[k]) return strut_stepping_snapshot_free(snapshot), NULL;
+    strut_arena_store(arenas[k], snapshot->stored[k]);
   }
-  strut_arena_store(&state->arena, snapshot->arena);
-  strut_arena_store(measured, snapshot->measure);
-  strut_arena_store(&stepping->inputs.arena, snapshot->inputs);
   return snapshot;
 }
 
@@ -451,7 +452,7 @@ bool strut_stepping_restore(strut_stepping *stepping, const strut_stepping_snaps
   if (snapshot->identity != stepping->identity) return false;
   strut_state *state = stepping->run.state;
   strut_arena arena = state->arena, measured = stepping->run.measure.arena; /* may have grown */
-  strut_arena_restore(&stepping->inputs.arena, snapshot->inputs);
+  strut_arena_restore(&stepping->inputs.arena, snapshot->stored[0]);
   stepping->inputs.work = snapshot->input_work;
   write_all(&stepping->inputs, stepping->model);
   stepping->run = snapshot->run;
@@ -460,16 +461,14 @@ bool strut_stepping_restore(strut_stepping *stepping, const strut_stepping_snaps
   stepping->status = snapshot->status;
   *state = snapshot->state;
   state->arena = arena;
-  strut_arena_restore(&state->arena, snapshot->arena);
-  strut_arena_restore(&stepping->run.measure.arena, snapshot->measure);
+  strut_arena_restore(&state->arena, snapshot->stored[1]);
+  strut_arena_restore(&stepping->run.measure.arena, snapshot->stored[2]);
   refresh(stepping);
   return true;
 }
 
 void strut_stepping_snapshot_free(strut_stepping_snapshot *snapshot) {
   if (!snapshot) return;
-  strut_release(snapshot->arena);
-  strut_release(snapshot->measure);
-  strut_release(snapshot->inputs);
+  for (int k = 0; k < 3; k++) strut_release(snapshot->stored[k]);
   strut_release(snapshot);
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/scene/signal_program.h"
 #include "engine/scene/things.h"
 #include "engine/scene/value_rows.h"
 
@@ -148,6 +149,35 @@ const char *strut_channel_item(const strut_channel_row *row, const strut_scene *
   assert(i < strut_channel_items(row, scene));
   return i == strut_owner_count(row->owner, scene) ? "total"
                                                    : strut_owner_name(row->owner, scene, i);
+}
+
+/* By the second. */
+static const char *unit_of_rate(const char *unit) {
+  static const char *const rates[][2] = {{"m", "m/s"}, {"rad", "rad/s"}, {"m^2", "m^2/s"}};
+  for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++)
+    if (strcmp(unit, rates[i][0]) == 0) return rates[i][1];
+  return "SI";
+}
+
+const char *strut_channel_item_unit(const strut_channel_row *row, const strut_scene *scene,
+                                    size_t i) {
+  const char *unit = row->unit;
+  const size_t at = strut_owner_index(row->owner, scene, i);
+  if (row->owner == STRUT_OWNER_SENSOR)
+    unit = strut_observable_at(strut_sensor_column(&scene->sensors[at]).kind)->unit;
+  if (row->owner == STRUT_OWNER_SIGNAL && scene->signals[at].unit) unit = scene->signals[at].unit;
+  if (row->owner == STRUT_OWNER_STATE) unit = scene->states[at].unit ? scene->states[at].unit : "1";
+  return row->first == STRUT_COLUMN_SENSOR_RATE ? unit_of_rate(unit) : unit;
+}
+
+const char *strut_channel_unit(const strut_channel_row *row, const strut_scene *scene) {
+  const char *unit = NULL;
+  for (size_t i = 0; i < strut_owner_count(row->owner, scene); i++) {
+    const char *own = strut_channel_item_unit(row, scene, i);
+    if (unit && strcmp(own, unit) != 0) return row->unit;
+    unit = own;
+  }
+  return unit ? unit : row->unit;
 }
 
 size_t strut_channel_things(const strut_channel_row *row, const strut_scene *scene) {

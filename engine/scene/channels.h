@@ -120,6 +120,12 @@ STRUT_API size_t strut_channel_items(const strut_channel_row *row, const struct 
 /** Name of the i-th item; the scene's, or "total". */
 STRUT_API const char *strut_channel_item(const strut_channel_row *row,
                                          const struct strut_scene *scene, size_t i);
+/** Unit of the i-th item: that of its sensor, signal or state, "SI" where it is not known; else the row's. */
+STRUT_API const char *strut_channel_item_unit(const strut_channel_row *row,
+                                              const struct strut_scene *scene, size_t i);
+/** The unit that all items have; else that of the row. */
+STRUT_API const char *strut_channel_unit(const strut_channel_row *row,
+                                         const struct strut_scene *scene);
 /** Number and names of what people see as the columns of a channel: items, but components of the system's. */
 STRUT_API size_t strut_channel_things(const strut_channel_row *row,
                                       const struct strut_scene *scene);

@@ -86,6 +86,17 @@ static double turn_at(const strut_scene *scene, const strut_member *member, size
   return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
 }
 
+bool strut_scene_signals_repeat(const strut_scene *scene, double time) {
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *signal = &scene->signals[i];
+    if ((signal->kind != STRUT_SINE && signal->kind != STRUT_SQUARE) || isfinite(signal->stop))
+      continue;
+    double turns = time * signal->frequency;
+    if (fabs(turns - round(turns)) > 1e-9 * fmax(1.0, turns)) return false;
+  }
+  return true;
+}
+
 double strut_scene_last_signal_event(const strut_scene *scene) {
   double last = 0.0;
   for (size_t i = 0; i < scene->signal_count; i++) {

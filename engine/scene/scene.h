@@ -353,6 +353,8 @@ STRUT_API strut_collision strut_collision_default(void);
 STRUT_API void strut_scene_free(strut_scene *scene);
 /** Time of the last start or end of a signal, after which motions may be steady [s]. */
 STRUT_API double strut_scene_last_signal_event(const strut_scene *scene);
+/** Do all signals without an end repeat themselves after this time [s]? */
+STRUT_API bool strut_scene_signals_repeat(const strut_scene *scene, double time);
 
 /**
  * The four equivalent descriptions of the prestress of a member, and its stiffness, in the drawn

@@ -70,6 +70,7 @@ typedef struct strut_relay {
 typedef struct strut_signal {
   const char *name;  /* as the file calls it, or NULL: then */
   const char *owner; /* how messages call it, "the signal of actuator 'd'"; or NULL */
+  const char *unit;  /* of its values, "1": none; NULL: not known */
   strut_signal_kind kind;
   double amplitude;     /* [m], [N] or [1] */
   double frequency;     /* [Hz], > 0 for sine, half-sine, square */

@@ -165,7 +165,7 @@ TEST(rows_longer_than_a_chunk) {
   FREED const char **names = calloc(NODES, sizeof *names);
   for (size_t i = 0; i < NODES; i++) names[i] = "n";
   strut_record_channel channel = {
-      STRUT_CHANNEL_POSITION, "position", "m", NODES, 2, 1, names, axes};
+      STRUT_CHANNEL_POSITION, "position", "m", NODES, 2, 1, names, axes, NULL};
   strut_record_layout layout = {1 + 2 * NODES, 1, &channel, ROWS};
   FREED double *rows = sample_rows(&layout, 0, ROWS);
   strut_sink *sink = strut_hdf5_create(directory, "", NULL);

@@ -14,12 +14,12 @@ static const char *const reactions[] = {"normal", "friction"};
 static const char *const energies[] = {"kinetic", "elastic", "gravity"};
 
 static const strut_record_channel channels[] = {
-    {STRUT_CHANNEL_POSITION, "position", "m", 3, 2, 1, nodes, axes},
-    {STRUT_CHANNEL_VELOCITY, "velocity", "m/s", 3, 2, 7, nodes, axes},
-    {STRUT_CHANNEL_LENGTH, "length", "m", 2, 1, 13, members, single},
-    {STRUT_CHANNEL_FORCE, "force", "N", 2, 1, 15, members, single},
-    {STRUT_CHANNEL_CONTACT, "contact", "N", 2, 2, 17, nodes, reactions},
-    {STRUT_CHANNEL_ENERGY, "energy", "J", 1, 3, 21, total, energies}};
+    {STRUT_CHANNEL_POSITION, "position", "m", 3, 2, 1, nodes, axes, NULL},
+    {STRUT_CHANNEL_VELOCITY, "velocity", "m/s", 3, 2, 7, nodes, axes, NULL},
+    {STRUT_CHANNEL_LENGTH, "length", "m", 2, 1, 13, members, single, NULL},
+    {STRUT_CHANNEL_FORCE, "force", "N", 2, 1, 15, members, single, NULL},
+    {STRUT_CHANNEL_CONTACT, "contact", "N", 2, 2, 17, nodes, reactions, NULL},
+    {STRUT_CHANNEL_ENERGY, "energy", "J", 1, 3, 21, total, energies, NULL}};
 
 static const strut_record_layout layout = {24, 6, channels, 40};
 

@@ -50,13 +50,17 @@ static bool relay_sample(const strut_model *model, strut_state *state, int32_t s
 
 /*
  * Switches a relay at time t [s] of the steps and the state's positions and velocities. Where what it
- * drives takes its own input past the other threshold at once, state->trouble says so.
+ * drives takes its own input past the other threshold at once, state->trouble says so; an input that is
+ * there because the switch was located a little early is not.
  */
 static void relay_switch(const strut_model *model, strut_state *state, int32_t signal, double t) {
   assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  double now = t + state->time_offset;
   state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
+  double before = relay_margin(model, state, signal, now, state->v);
   strut_drive_apply(model, state, t);
-  if (!(relay_margin(model, state, signal, t + state->time_offset, state->v) < 0.0)) return;
+  double margin = relay_margin(model, state, signal, now, state->v);
+  if (!(margin < 0.0 && margin < before)) return;
   state->trouble = STRUT_FAILURE_RELAY;
   state->trouble_node = signal;
 }

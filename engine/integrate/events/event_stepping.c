@@ -44,13 +44,10 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
   strut_arena *arena = &state->arena;
   strut_event_view *view = strut_arena_allocate(arena, 1, sizeof *view);
   if (!view) return false;
-  view->q = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
-  view->v = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
-  view->memory = strut_arena_allocate(arena, strut_history_count(model), sizeof(double));
   stepper->view = view;
-  bool failed = !view->q || !view->v || !view->memory;
-  strut_step_end_create(model, arena, false, &view->instant, &failed);
-  return !failed;
+  return STRUT_NUMBERS(arena, model->length, &view->q, &view->v) &&
+         STRUT_NUMBERS(arena, strut_history_count(model), &view->memory) &&
+         strut_step_end_create(model, arena, false, &view->instant);
 }
 
 /* Contact forces in the present modes at an instant within a step. */

@@ -320,9 +320,9 @@ static inline int32_t strut_law_of(const strut_law_switches *laws, int32_t place
   return laws->nearby ? laws->nearby[place] : place;
 }
 
-/** Arrays of one end of a step, with or without positions and velocities of its own. */
-void strut_step_end_create(const strut_model *model, strut_arena *arena, bool borrowed,
-                           strut_step_end *end, bool *failed);
+/** Arrays of one end of a step, with or without positions and velocities of its own. False: out of memory. */
+bool strut_step_end_create(const strut_model *model, strut_arena *arena, bool borrowed,
+                           strut_step_end *end);
 /** Workspace for a method; NULL: out of memory. */
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
                                  const strut_step_formula *formula,

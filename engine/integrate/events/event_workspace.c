@@ -16,56 +16,38 @@ static size_t most_law_switches(const strut_model *model) {
                   strut_scene_kinks(model->scene, NULL, NULL));
 }
 
-static void *make(strut_arena *arena, size_t count, size_t size, bool *failed) {
-  void *array = strut_arena_allocate(arena, count, size);
-  *failed = *failed || !array;
-  return array;
-}
-
-static double *make_doubles(strut_arena *arena, size_t count, bool *failed) {
-  return make(arena, count, sizeof(double), failed);
-}
-
-void strut_step_end_create(const strut_model *model, strut_arena *arena, bool borrowed,
-                           strut_step_end *end, bool *failed) {
+bool strut_step_end_create(const strut_model *model, strut_arena *arena, bool borrowed,
+                           strut_step_end *end) {
   const strut_contact_table *contacts = &model->contacts;
-  size_t length = (size_t)model->length, switches = most_law_switches(model) + 1;
-  if (!borrowed) end->q = make_doubles(arena, length, failed);
-  if (!borrowed) end->v = make_doubles(arena, length, failed);
-  end->a = make_doubles(arena, length, failed);
-  end->structure = make_doubles(arena, length, failed);
-  end->touch = make(arena, (size_t)contacts->count, sizeof *end->touch, failed);
-  end->tension = make_doubles(arena, switches, failed);
-  end->stretch = make_doubles(arena, switches, failed);
-  end->stretch_rate = make_doubles(arena, switches, failed);
-  if (contacts->surface)
-    end->frame = make(arena, (size_t)contacts->count, sizeof *end->frame, failed);
-  if (contacts->surface && contacts->moves)
-    end->motion = make(arena, model->scene->ground_count, sizeof *end->motion, failed);
+  return (borrowed || STRUT_NUMBERS(arena, model->length, &end->q, &end->v)) &&
+         STRUT_NUMBERS(arena, model->length, &end->a, &end->structure) &&
+         STRUT_NUMBERS(arena, most_law_switches(model) + 1, &end->tension, &end->stretch,
+                       &end->stretch_rate) &&
+         STRUT_ALLOCATE(arena, STRUT_NEW(end->touch, contacts->count)) &&
+         (!contacts->surface || STRUT_ALLOCATE(arena, STRUT_NEW(end->frame, contacts->count))) &&
+         (!contacts->surface || !contacts->moves ||
+          STRUT_ALLOCATE(arena, STRUT_NEW(end->motion, model->scene->ground_count)));
 }
 
-static void make_contacts(const strut_model *model, strut_state *state,
-                          strut_event_stepper *stepper, bool *failed) {
+static bool make_contacts(const strut_model *model, strut_state *state,
+                          strut_event_stepper *stepper) {
   strut_arena *arena = &state->arena;
-  size_t count = (size_t)model->contacts.count;
+  int32_t count = model->contacts.count;
   strut_contact_modes *modes = &stepper->modes;
-  modes->of = make(arena, count, 1, failed);
-  modes->side = make(arena, count, 1, failed);
-  modes->damper = make(arena, count, 1, failed);
-  modes->outward = make_doubles(arena, count, failed);
-  if (model->contacts.surface) modes->facet = make(arena, count, sizeof *modes->facet, failed);
-  stepper->active.closed = make(arena, count, sizeof *stepper->active.closed, failed);
-  stepper->active.stuck = make(arena, count, sizeof *stepper->active.stuck, failed);
+  strut_active_set *active = &stepper->active;
   strut_contact_bodies *contacts = &stepper->contacts;
   contacts->entry = state->latest->grip ? state->latest->grip : model->contacts.entry;
-  contacts->body = make(arena, count, sizeof *contacts->body, failed);
-  contacts->compliance = make(arena, count, sizeof *contacts->compliance, failed);
-  contacts->settling_time = make_doubles(arena, count, failed);
-  contacts->damped = make_doubles(arena, count, failed);
-  contacts->scatter = make_doubles(arena, (size_t)model->length, failed);
-  /* for recording and measuring: */
-  state->modes.held_normal = make_doubles(arena, count, failed);
-  state->modes.held_friction = make_doubles(arena, count, failed);
+  return STRUT_ALLOCATE(arena, STRUT_NEW(modes->of, count), STRUT_NEW(modes->side, count),
+                        STRUT_NEW(modes->damper, count), STRUT_NEW(active->closed, count),
+                        STRUT_NEW(active->stuck, count), STRUT_NEW(contacts->body, count),
+                        STRUT_NEW(contacts->compliance, count)) &&
+         (!model->contacts.surface || STRUT_ALLOCATE(arena, STRUT_NEW(modes->facet, count))) &&
+         STRUT_NUMBERS(arena, count, &modes->outward, &contacts->settling_time,
+                       &contacts->damped) &&
+         /* for recording and measuring: */
+         STRUT_ALLOCATE(arena, STRUT_NEW(state->modes.held_normal, count),
+                        STRUT_NEW(state->modes.held_friction, count)) &&
+         STRUT_NUMBERS(arena, model->length, &contacts->scatter);
 }
 
 static void list_cables(const strut_model *model, strut_law_switches *laws) {
@@ -107,45 +89,41 @@ static void list_threshold(strut_law_switches *laws, int32_t signal) {
 }
 
 /* Behind all others. */
-static void list_turns(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                       bool *failed) {
+static bool list_turns(const strut_model *model, strut_state *state, strut_event_stepper *stepper) {
   strut_turns *turns = &stepper->turns;
   turns->first = stepper->laws.count;
   int32_t count = strut_turns_list(model, NULL, NULL);
-  uint32_t *ends = make(&state->arena, 2 * (size_t)count, sizeof *ends, failed);
-  turns->ahead = make_doubles(&state->arena, 2 * (size_t)count, failed);
+  uint32_t *ends;
+  if (!STRUT_ALLOCATE(&state->arena, STRUT_NEW(ends, 2 * count),
+                      STRUT_NEW(turns->ahead, 2 * count)))
+    return false;
   turns->ends = ends;
-  if (*failed || !count) return;
-  turns->count = strut_turns_list(model, stepper->laws.item + turns->first, ends);
+  if (count) turns->count = strut_turns_list(model, stepper->laws.item + turns->first, ends);
+  return true;
 }
 
-static void list_kinks(const strut_model *model, strut_arena *arena, strut_event_stepper *stepper,
-                       bool *failed) {
+static bool list_kinks(const strut_model *model, strut_arena *arena, strut_event_stepper *stepper) {
   strut_kinks *kinks = &stepper->kinks;
-  int32_t count = strut_scene_kinks(model->scene, NULL, NULL);
-  int32_t *signal = make(arena, (size_t)count, sizeof *signal, failed);
-  kinks->at = make(arena, (size_t)count, sizeof *kinks->at, failed);
-  double **arrays[] = {&kinks->side, &kinks->margin, &kinks->rate, &kinks->largest};
-  for (int k = 0; k < 4; k++) *arrays[k] = make_doubles(arena, (size_t)count, failed);
-  if (*failed) return;
+  int32_t count = strut_scene_kinks(model->scene, NULL, NULL), *signal;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(signal, count), STRUT_NEW(kinks->at, count)) ||
+      !STRUT_NUMBERS(arena, count, &kinks->side, &kinks->margin, &kinks->rate, &kinks->largest))
+    return false;
   kinks->controlled = stepper->formula->adaptive;
   kinks->count = strut_scene_kinks(model->scene, kinks->at, signal);
   for (int32_t i = 0; i < kinks->count; i++) {
     list_threshold(&stepper->laws, signal[i]);
     stepper->laws.item[stepper->laws.count - 1].kink = 1 + i;
   }
+  return true;
 }
 
-static void list_laws(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                      bool *failed) {
+static bool list_laws(const strut_model *model, strut_state *state, strut_event_stepper *stepper) {
   strut_law_switches *laws = &stepper->laws;
   size_t most = most_law_switches(model);
-  if (!most) return;
-  laws->item = make(&state->arena, most, sizeof *laws->item, failed);
-  laws->acting = make(&state->arena, most, 1, failed);
-  if (model->elements.scattered)
-    laws->nearby = make(&state->arena, most, sizeof *laws->nearby, failed);
-  if (*failed) return;
+  if (!most) return true;
+  if (!STRUT_ALLOCATE(&state->arena, STRUT_NEW(laws->item, most), STRUT_NEW(laws->acting, most)) ||
+      (model->elements.scattered && !STRUT_ALLOCATE(&state->arena, STRUT_NEW(laws->nearby, most))))
+    return false;
   list_cables(model, laws);
   list_elements(model, state, laws);
   strut_history_list(model, state, laws);
@@ -156,7 +134,7 @@ static void list_laws(const strut_model *model, strut_state *state, strut_event_
     if (model->scene->signals[signal].trigger.kind != STRUT_TRIGGER_CONTACT)
       list_threshold(laws, signal);
   }
-  if (stepper->formula->exact) list_kinks(model, &state->arena, stepper, failed);
+  return !stepper->formula->exact || list_kinks(model, &state->arena, stepper);
 }
 
 /*
@@ -172,10 +150,9 @@ static double rounding_of(const strut_model *model, const strut_tableau *pair, d
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
                                  const strut_step_formula *formula,
                                  const strut_integrator_settings *settings) {
-  bool failed = false;
   strut_arena *arena = &state->arena;
-  strut_event_stepper *stepper = make(arena, 1, sizeof *stepper, &failed);
-  if (failed) return NULL;
+  strut_event_stepper *stepper = strut_arena_allocate(arena, 1, sizeof *stepper);
+  if (!stepper) return NULL;
   size_t stages = (size_t)formula->stages, contacts = (size_t)model->contacts.count;
   stepper->formula = formula;
   stepper->now = &stepper->end[0], stepper->next = &stepper->end[1];
@@ -185,20 +162,20 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
     double fastest = stepper->control.frequency = strut_model_fastest_spring(model);
     stepper->control.rounding = rounding_of(model, formula->tableau, fastest);
   }
-  strut_step_end_create(model, arena, true, stepper->now, &failed);
-  strut_step_end_create(model, arena, false, stepper->next, &failed);
-  make_contacts(model, state, stepper, &failed);
-  stepper->stage = make(arena, stages + 1, sizeof *stepper->stage, &failed);
-  for (size_t k = 0; k < stages && !failed; k++)
-    stepper->stage[k] = make_doubles(arena, (size_t)model->length, &failed);
-  stepper->middle = make_doubles(arena, (size_t)model->length, &failed);
-  list_laws(model, state, stepper, &failed);
-  if (!failed) list_turns(model, state, stepper, &failed);
+  bool ready = strut_step_end_create(model, arena, true, stepper->now) &&
+               strut_step_end_create(model, arena, false, stepper->next) &&
+               make_contacts(model, state, stepper) &&
+               STRUT_ALLOCATE(arena, STRUT_NEW(stepper->stage, stages + 1),
+                              STRUT_NEW(stepper->middle, model->length));
+  for (size_t k = 0; k < stages && ready; k++)
+    ready = STRUT_NUMBERS(arena, model->length, &stepper->stage[k]);
+  if (!ready || !list_laws(model, state, stepper) || !list_turns(model, state, stepper))
+    return NULL;
   stepper->scales = formula->adaptive || stepper->kinks.count;
   size_t switches = contacts + (size_t)(stepper->laws.count + stepper->turns.count);
   strut_chatter *chatter = &stepper->chatter;
-  chatter->times = make(arena, switches, sizeof *chatter->times, &failed);
-  chatter->switched = make(arena, switches, sizeof *chatter->switched, &failed);
-  stepper->control.least = make(arena, switches, sizeof *stepper->control.least, &failed);
-  return failed || strut_event_stepper_prepare(model, state, settings, stepper) ? NULL : stepper;
+  ready = STRUT_ALLOCATE(arena, STRUT_NEW(chatter->times, switches),
+                         STRUT_NEW(chatter->switched, switches),
+                         STRUT_NEW(stepper->control.least, switches));
+  return ready && !strut_event_stepper_prepare(model, state, settings, stepper) ? stepper : NULL;
 }

@@ -244,25 +244,25 @@ static void *implicit_create(const strut_model *model, strut_state *state,
                              const strut_integrator_settings *settings) {
   strut_event_stepper *stepper = strut_event_stepper_create(model, state, &formula, settings);
   strut_arena *arena = &state->arena;
-  size_t both = (size_t)model->length;
   strut_implicit *implicit = strut_arena_allocate(arena, 1, sizeof *implicit);
-  int32_t *row_of = strut_arena_allocate(arena, both, sizeof *row_of);
-  if (!stepper || !implicit || !row_of) return NULL;
-  if (!(implicit->coordinate = strut_arena_allocate(arena, both, sizeof *row_of))) return NULL;
+  int32_t *row_of;
+  if (!stepper || !implicit ||
+      !STRUT_ALLOCATE(arena, STRUT_NEW(row_of, model->length),
+                      STRUT_NEW(implicit->coordinate, model->length)))
+    return NULL;
   implicit->n = strut_number_free(model, NULL, row_of, implicit->coordinate);
   for (int32_t k = 0; k < model->feedback.state_count; k++) /* internal ones are velocities, too */
     implicit->coordinate[implicit->n++] = model->feedback.base + k;
   implicit->time = (double)NAN;
   size_t n = (size_t)implicit->n;
-  double **const arrays[] = {&implicit->slope[0], &implicit->slope[1], &implicit->matrix,
-                             &implicit->gain[0],  &implicit->gain[1],  &implicit->drift,
-                             &implicit->x,        &implicit->known};
-  const size_t sizes[] = {n * n, n * n, n * n, n * POWERS, n * POWERS, n, n, both};
-  for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
-    if (!(*arrays[k] = strut_arena_allocate(arena, sizes[k], sizeof(double)))) return NULL;
   stepper->implicit = implicit;
-  implicit->pivot = strut_arena_allocate(arena, n, sizeof *implicit->pivot);
-  return implicit->pivot ? stepper : NULL;
+  bool ready =
+      STRUT_NUMBERS(arena, n * n, &implicit->slope[0], &implicit->slope[1], &implicit->matrix) &&
+      STRUT_NUMBERS(arena, n * POWERS, &implicit->gain[0], &implicit->gain[1]) &&
+      STRUT_NUMBERS(arena, n, &implicit->drift, &implicit->x) &&
+      STRUT_ALLOCATE(arena, STRUT_NEW(implicit->known, model->length),
+                     STRUT_NEW(implicit->pivot, n));
+  return ready ? stepper : NULL;
 }
 
 const strut_integrator strut_integrator_implicit = {

@@ -14,12 +14,9 @@ bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *ta
                                strut_arena *arena, strut_krylov_basis *space) {
   size_t n = (size_t)tangent->n, m = (size_t)most;
   *space = (strut_krylov_basis){.model = model, .tangent = tangent, .most = most};
-  space->vector = strut_arena_allocate(arena, m * n, sizeof(double));
-  space->stiffness = strut_arena_allocate(arena, m * m, sizeof(double));
-  space->damping = strut_arena_allocate(arena, m * m, sizeof(double));
-  space->image = strut_arena_allocate(arena, n, sizeof(double));
-  space->node = strut_arena_allocate(arena, 3 * (size_t)model->length, sizeof(double));
-  return space->vector && space->stiffness && space->damping && space->image && space->node;
+  return STRUT_NUMBERS(arena, m * m, &space->stiffness, &space->damping) &&
+         STRUT_ALLOCATE(arena, STRUT_NEW(space->vector, m * n), STRUT_NEW(space->image, n),
+                        STRUT_NEW(space->node, 3 * (size_t)model->length));
 }
 
 /* What rigid bars leave of it; nothing where they hold all of it and only rounding is left. */
@@ -115,7 +112,7 @@ bool strut_krylov_basis_add(strut_krylov_basis *space, double *vector) {
     if (!(left > 1e-8)) return false; /* what is left is rounding */
     if (left > 0.5) break;
   }
-  memcpy(space->vector + (size_t)space->count * (size_t)n, vector, (size_t)n * sizeof *vector);
+  memmove(space->vector + (size_t)space->count * (size_t)n, vector, (size_t)n * sizeof *vector);
   space->count++;
   project_last(space);
   return true;
@@ -130,58 +127,19 @@ void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c
   }
 }
 
-/* Rows of c made orthonormal, the dependent ones dropped; how many are left. */
-static int orthonormal_rows(double *c, int rows, int columns) {
-  int kept = 0;
-  for (int r = 0; r < rows; r++) {
-    double *x = c + (size_t)r * (size_t)columns, *to = c + (size_t)kept * (size_t)columns;
-    double before = sqrt(strut_dot(x, x, columns));
-    for (int pass = 0; pass < 2; pass++)
-      for (int j = 0; j < kept; j++) {
-        const double *y = c + (size_t)j * (size_t)columns;
-        double part = strut_dot(x, y, columns);
-        for (int i = 0; i < columns; i++) x[i] -= part * y[i];
-      }
-    double size = sqrt(strut_dot(x, x, columns));
-    if (!(size > 1e-8 * before)) continue;
-    for (int i = 0; i < columns; i++) to[i] = x[i] / size;
-    kept++;
-  }
-  return kept;
-}
-
-/* small becomes c small c'. */
-static void rotate(double *small, int most, const double *c, int rows, int columns, double *work) {
-  for (int j = 0; j < columns; j++) { /* c small, column by column, in place of its upper rows */
-    for (int r = 0; r < rows; r++) {
-      work[r] = 0.0;
-      for (int i = 0; i < columns; i++) work[r] += c[r * columns + i] * small[i * most + j];
-    }
-    for (int r = 0; r < rows; r++) small[r * most + j] = work[r];
-  }
-  for (int r = 0; r < rows; r++) {
-    for (int s = 0; s < rows; s++) {
-      work[s] = 0.0;
-      for (int i = 0; i < columns; i++) work[s] += small[r * most + i] * c[s * columns + i];
-    }
-    for (int s = 0; s < rows; s++) small[r * most + s] = work[s];
-  }
-}
-
-void strut_krylov_basis_shrink(strut_krylov_basis *space, double *c, int rows, double *work) {
+void strut_krylov_basis_shrink(strut_krylov_basis *space, const double *c, int rows, double *work) {
   size_t n = (size_t)space->tangent->n;
-  int columns = space->count, kept = orthonormal_rows(c, rows, columns);
-  rotate(space->stiffness, space->most, c, kept, columns, work);
-  rotate(space->damping, space->most, c, kept, columns, work);
+  int columns = space->count;
   for (size_t i = 0; i < n; i++) {
-    for (int r = 0; r < kept; r++) {
+    for (int r = 0; r < rows; r++) {
       work[r] = 0.0;
       for (int j = 0; j < columns; j++)
         work[r] += c[r * columns + j] * space->vector[(size_t)j * n + i];
     }
-    for (int r = 0; r < kept; r++) space->vector[(size_t)r * n + i] = work[r];
+    for (int r = 0; r < rows; r++) space->vector[(size_t)r * n + i] = work[r];
   }
-  space->count = kept;
+  space->count = 0;
+  for (int r = 0; r < rows; r++) strut_krylov_basis_add(space, space->vector + (size_t)r * n);
 }
 
 /* Lanczos's method for the largest eigenvalues of a tangent matrix: where to look for motions. */
@@ -198,16 +156,6 @@ typedef struct lanczos {
   double mix[KEPT][MOST_STEPS];               /* its eigenvectors */
   int steps, wanted;
 } lanczos;
-
-static bool begin(lanczos *self, strut_arena *arena) {
-  size_t n = (size_t)self->space->tangent->n;
-  self->v = strut_arena_allocate(arena, n, sizeof(double));
-  self->u = strut_arena_allocate(arena, n, sizeof(double));
-  self->before = strut_arena_allocate(arena, n, sizeof(double));
-  self->r = strut_arena_allocate(arena, n, sizeof(double));
-  self->kept = strut_arena_allocate(arena, KEPT * n, sizeof(double));
-  return self->v && self->u && self->before && self->r && self->kept;
-}
 
 /* Are all eigenvalues of the leading n rows below x? Then all pivots of T - x are negative. */
 static bool all_below(const lanczos *self, int n, double x) {
@@ -332,12 +280,14 @@ bool strut_lanczos_limits(strut_krylov_basis *space, double a, double b) {
   strut_arena arena = {0};
   lanczos *self = strut_arena_allocate(&arena, 1, sizeof *self);
   if (self) *self = (lanczos){.space = space, .a = a, .b = b};
-  bool good = self && begin(self, &arena);
+  size_t n = (size_t)space->tangent->n;
+  bool good = self && STRUT_NUMBERS(&arena, n, &self->v, &self->u, &self->before, &self->r) &&
+              STRUT_NUMBERS(&arena, KEPT * n, &self->kept);
   if (good && walk(self)) {
     good = mix(self);
     if (good) gather(self);
     for (int k = 0; good && k < self->wanted; k++)
-      strut_krylov_basis_add(space, self->kept + (size_t)k * (size_t)space->tangent->n);
+      strut_krylov_basis_add(space, self->kept + (size_t)k * n);
   }
   strut_arena_free(&arena);
   return good;

@@ -131,7 +131,7 @@ typedef struct search {
   strut_krylov_basis space;
   strut_tangent_limits found;
   bool damped, rk4;
-  double *x, *y, *other, *mix, *work; /* (n) twice and (n), coefficients */
+  double *x, *y, *other, *mix, *work; /* (n) thrice, coefficients of binding motions */
 } search;
 
 static bool begin(search *self, const strut_model *model, int most) {
@@ -139,12 +139,9 @@ static bool begin(search *self, const strut_model *model, int most) {
   self->damped = false;
   for (int32_t i = 0; i < self->tangent->damping->start[n]; i++)
     self->damped = self->damped || self->tangent->damping->value[i] != 0.0;
-  self->x = strut_arena_allocate(self->arena, n, sizeof(double));
-  self->y = strut_arena_allocate(self->arena, n, sizeof(double));
-  self->other = strut_arena_allocate(self->arena, n, sizeof(double));
-  self->mix = strut_arena_allocate(self->arena, 2 * STRUT_MOST_BINDING * m, sizeof(double));
-  self->work = strut_arena_allocate(self->arena, m, sizeof(double));
-  return self->x && self->y && self->other && self->mix && self->work &&
+  return STRUT_NUMBERS(self->arena, n, &self->x, &self->y, &self->other) &&
+         STRUT_NUMBERS(self->arena, 2 * STRUT_MOST_BINDING * m, &self->mix) &&
+         STRUT_NUMBERS(self->arena, m, &self->work) &&
          strut_krylov_basis_create(model, self->tangent, most, self->arena, &self->space) &&
          strut_tangent_limits_create(most, self->arena, &self->found);
 }

@@ -38,8 +38,8 @@ void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const do
 bool strut_krylov_basis_add(strut_krylov_basis *space, double *vector);
 /** x = the sum of the space's vectors times c (count). */
 void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *vector);
-/** The space becomes what the rows of c (rows, count) span; c is changed, work is (most). */
-void strut_krylov_basis_shrink(strut_krylov_basis *space, double *c, int rows, double *work);
+/** The space becomes what the rows of c (rows, count) span; work is (rows). */
+void strut_krylov_basis_shrink(strut_krylov_basis *space, const double *c, int rows, double *work);
 
 /**
  * Adds the motions of the largest eigenvalues of M^-1 (a K + b D), found by Lanczos's method: twice

@@ -241,7 +241,8 @@ static void add_panel(strut_run_scene *run, kind of, size_t first, double height
                           .unit = "s",
                           .low = run->motion->time[first],
                           .high = run->motion->time[last]};
-  panel->y = strut_axis_of(one ? "x displacement" : b.name, b.row ? b.row->unit : "m");
+  panel->y = strut_axis_of(one ? "x displacement" : b.name,
+                           b.row ? strut_channel_unit(b.row, run->model->scene) : "m");
   panel->height = height;
   panel->zero = of == NORMALS;
   panel->least = fmax(b.least, b.change ? 0 : LEVEL * most);

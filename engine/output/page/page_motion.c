@@ -309,7 +309,7 @@ static strut_value dots_of(const strut_result_object *of, size_t k) {
 #define BLOCK(X)                                                                                   \
   X("columns", "", COUNT(m->block[b].columns), "numbers of a frame")                               \
   X("quantum", "", NUMBER(m->block[b].quantum), "what a whole number stands for")                  \
-  X("unit", "", TEXT(row ? row->unit : "s"), "of it")                                              \
+  X("unit", "", TEXT(row ? strut_channel_unit(row, scene) : "s"), "of it")                         \
   X("names", "", IF(named, ARRAY(strut_channel_items(row, scene), name_of)), "whose it is")        \
   X("components", "", IF(row, ARRAY(row->components, component_of)), "of each thing")              \
   X("data", "", IF(row && scene->table_count, ARRAY(m->block[b].columns, dots_of)), "beside each") \

@@ -7,6 +7,7 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
+#include "engine/run/orbit/orbit.h"
 #include "engine/run/settle.h"
 #include "engine/scene/signal_program.h"
 
@@ -244,22 +245,15 @@ strut_status strut_track_create(const strut_model *model, size_t capacity, strut
   size_t both = 2 * (size_t)model->node_count;
   *track = (strut_track){.model = model, .capacity = capacity};
   track->sink = (strut_sink){track, begin_track, record_track_rows, NULL, STRUT_CHANNEL_POSITION};
-  track->time = strut_arena_allocate(arena, capacity, sizeof(double));
-  track->position = strut_arena_allocate(arena, capacity * both, sizeof(double));
-  return track->time && track->position ? STRUT_OK : STRUT_NO_MEMORY;
+  bool ready = STRUT_ALLOCATE(arena, STRUT_NEW(track->time, capacity),
+                              STRUT_NEW(track->position, capacity * both));
+  return ready ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
-/* Mean position along the ground at moment k; 0 where a support holds it or there is no ground. */
+/* Mean position along the ground at moment k; 0 where the structure cannot travel. */
 static double mean_along_ground(const strut_track *track, size_t k) {
-  const strut_model *model = track->model;
-  const double *q = track->position + 2 * k * (size_t)model->node_count;
-  double sum = 0.0;
-  if (!strut_contacts_allow_travel(&model->contacts)) return 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) {
-    if (model->fixed[2 * i] || model->fixed[2 * i + 1]) return 0.0;
-    sum += q[2 * i] * model->contacts.tangent[0] + q[2 * i + 1] * model->contacts.tangent[1];
-  }
-  return sum / model->node_count;
+  const double *positions = track->position + 2 * k * (size_t)track->model->node_count;
+  return strut_model_travels(track->model) ? strut_mean_along_ground(track->model, positions) : 0.0;
 }
 
 double strut_track_distance(const strut_track *track, const strut_track *second, double period) {

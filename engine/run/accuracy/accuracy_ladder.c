@@ -306,12 +306,9 @@ static strut_status create_ladder(strut_accuracy *accuracy, strut_ladder *ladder
   for (int k = 0; k < 3 && !status; k++)
     status = strut_track_create(ladder->model, moments, &ladder->arena, &ladder->rung[k].track);
   size_t quantities = accuracy->experiment.quantity_count;
-  double **const arrays[] = {&ladder->difference, &ladder->shifted, &ladder->results};
-  for (size_t k = 0; k < sizeof arrays / sizeof arrays[0] && !status; k++)
-    if (!(*arrays[k] = strut_arena_allocate(&ladder->arena, STRUT_LADDER_RUNS * (quantities + 1),
-                                            sizeof(double))))
-      status = STRUT_NO_MEMORY;
-  return status ? strut_fail(accuracy->error, status, "out of memory") : STRUT_OK;
+  bool ready = !status && STRUT_NUMBERS(&ladder->arena, STRUT_LADDER_RUNS * (quantities + 1),
+                                        &ladder->difference, &ladder->shifted, &ladder->results);
+  return ready ? STRUT_OK : strut_no_memory(accuracy->error, "");
 }
 
 /* ---- sensitivity to the start ---- */
@@ -328,9 +325,8 @@ static strut_status shift_start(strut_ladder *ladder, double shift, strut_snapsh
   const strut_model *model = ladder->model;
   size_t bytes = (size_t)model->length * sizeof(double);
   strut_state *state = NULL;
-  start->q = strut_arena_allocate(&ladder->arena, (size_t)model->length, sizeof(double));
-  start->v = strut_arena_allocate(&ladder->arena, (size_t)model->length, sizeof(double));
-  if (!start->q || !start->v) return strut_no_memory(ladder->a->error, "");
+  if (!STRUT_NUMBERS(&ladder->arena, model->length, &start->q, &start->v))
+    return strut_no_memory(ladder->a->error, "");
   strut_status status = strut_state_create(model, &state, ladder->a->error);
   if (status) return status;
   memcpy(start->q, state->q, bytes);

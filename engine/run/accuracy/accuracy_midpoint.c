@@ -244,11 +244,10 @@ strut_status strut_accuracy_try_midpoint(strut_accuracy *accuracy, bool *done) {
               !accuracy->experiment.steady.wanted && !has_jumping_signal(scene) && h.e.step > 0.0;
   if (!fits) return STRUT_OK;
   strut_status status = STRUT_OK;
-  size_t both = 2 * scene->node_count;
   h.fast_motion.model = accuracy->model;
-  for (int k = 0; k < 2 && !status; k++)
-    if (!(h.fast_motion.before[k] = strut_arena_allocate(&h.arena, both, sizeof(double))))
-      status = strut_no_memory(accuracy->error, "");
+  if (!STRUT_NUMBERS(&h.arena, 2 * scene->node_count, &h.fast_motion.before[0],
+                     &h.fast_motion.before[1]))
+    status = strut_no_memory(accuracy->error, "");
   if (!status) status = halve_until_kept(&h, done);
   strut_summary_free(&h.now);
   strut_summary_free(&h.before);

@@ -338,9 +338,8 @@ strut_status strut_follow_curve_make(strut_follow_system *system,
   curve_walk w = {.w = {.s = system, .limits = limits, .branch = curve},
                   .criterion = {.kind = start->kind},
                   .slope = (double)NAN};
-  double **const arrays[] = {&w.along, &w.across, &w.step, &w.before};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    *arrays[i] = strut_follow_allocate(system, &curve->arena, system->m, sizeof(double));
+  if (!STRUT_NUMBERS(&curve->arena, system->m, &w.along, &w.across, &w.step, &w.before))
+    system->status = strut_no_memory(system->error, "");
   strut_follow_orbit *orbit = strut_follow_orbit_new(system, &curve->arena, &start->at);
   if (system->status) return system->status;
   bool gap = start->kind == STRUT_FOLLOW_TOUCH || start->kind == STRUT_FOLLOW_LIFT;

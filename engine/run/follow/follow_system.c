@@ -22,13 +22,7 @@ enum { SAMPLES = 16 };
 
 /* Number of drive periods after which no signal starts or ends any more; -1: some signal never repeats. */
 static int64_t periods_before(const strut_scene *scene, double period) {
-  for (size_t i = 0; i < scene->signal_count; i++) {
-    const strut_signal *signal = &scene->signals[i];
-    if ((signal->kind != STRUT_SINE && signal->kind != STRUT_SQUARE) || isfinite(signal->stop))
-      continue;
-    double turns = period * signal->frequency;
-    if (fabs(turns - round(turns)) > 1e-9 * fmax(1.0, turns)) return -1;
-  }
+  if (!strut_scene_signals_repeat(scene, period)) return -1;
   return (int64_t)ceil(strut_scene_last_signal_event(scene) / period * (1.0 - 1e-12));
 }
 

@@ -15,11 +15,12 @@ bool strut_follow_word_read(const strut_follow_system *system, strut_arena *aren
   const strut_event_log *log = system->log;
   double span = system->period * system->how.repeats, begin = system->map[0].time;
   word->count = 0;
-  word->letter = strut_arena_allocate(arena, log->count + 1, sizeof *word->letter);
-  word->first = strut_arena_allocate(arena, (size_t)log->items + 1, 1);
-  int32_t *latest = strut_arena_allocate(arena, (size_t)log->items + 1, sizeof *latest);
-  if (!word->letter || !word->first || !latest) return false;
-  memcpy(word->first, log->first, (size_t)log->items);
+  word->first = log->first;
+  int32_t *latest;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(word->letter, log->count + 1),
+                      STRUT_NEW(latest, log->items + 1)) ||
+      !STRUT_DUPLICATE(arena, STRUT_NEW(word->first, log->items + 1)))
+    return false;
   for (size_t i = 0; i < log->count; i++) {
     const strut_logged_event *event = &log->event[i];
     double time = (event->time - begin) / span;

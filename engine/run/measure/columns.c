@@ -26,15 +26,10 @@ static bool is_speed(const strut_observable *observable) {
 bool strut_columns_create(const strut_model *model, size_t most, strut_arena *arena,
                           strut_columns *columns) {
   *columns = (strut_columns){.needs = 1u << STRUT_OBSERVED_DRIVES};
-  columns->column = strut_arena_allocate(arena, most, sizeof *columns->column);
-  columns->observe = strut_arena_allocate(arena, most, sizeof *columns->observe);
-  columns->value = strut_arena_allocate(arena, most, sizeof *columns->value);
-  columns->least = strut_arena_allocate(arena, most, sizeof *columns->least);
-  columns->most = strut_arena_allocate(arena, most, sizeof *columns->most);
-  columns->largest = strut_arena_allocate(arena, most, sizeof *columns->largest);
-  columns->branch = strut_arena_allocate(arena, most, sizeof *columns->branch);
-  return columns->column && columns->observe && columns->value && columns->least && columns->most &&
-         columns->largest && columns->branch &&
+  return STRUT_NUMBERS(arena, most, &columns->value, &columns->least, &columns->most,
+                       &columns->largest) &&
+         STRUT_ALLOCATE(arena, STRUT_NEW(columns->column, most), STRUT_NEW(columns->observe, most),
+                        STRUT_NEW(columns->branch, most)) &&
          strut_instant_create(model, arena, &columns->instant);
 }
 

@@ -286,26 +286,15 @@ strut_status strut_measure_create(const strut_model *model, const strut_experime
                        : periods < 1.5      ? 2
                                             : (size_t)ceil(periods - 1e-9) + 1;
   measurement->capacity = capacity > measurement->marks ? capacity : measurement->marks;
-  measurement->time =
-      strut_arena_allocate(&measurement->arena, measurement->capacity, sizeof *measurement->time);
-  measurement->x =
-      strut_arena_allocate(&measurement->arena, measurement->capacity, sizeof *measurement->x);
-  measurement->work =
-      strut_arena_allocate(&measurement->arena, measurement->capacity, sizeof *measurement->work);
-  measurement->contact_steps =
-      strut_arena_allocate(&measurement->arena, contacts, sizeof *measurement->contact_steps);
-  measurement->max_height =
-      strut_arena_allocate(&measurement->arena, contacts, sizeof *measurement->max_height);
-  measurement->last_gap =
-      strut_arena_allocate(&measurement->arena, contacts, sizeof *measurement->last_gap);
-  measurement->gap_before =
-      strut_arena_allocate(&measurement->arena, contacts, sizeof *measurement->gap_before);
+  bool ready = STRUT_NUMBERS(&measurement->arena, measurement->capacity, &measurement->time,
+                             &measurement->x, &measurement->work) &&
+               STRUT_NUMBERS(&measurement->arena, contacts, &measurement->max_height,
+                             &measurement->last_gap, &measurement->gap_before) &&
+               STRUT_ALLOCATE(&measurement->arena, STRUT_NEW(measurement->contact_steps, contacts));
   bool wanted = experiment->quantity_count > 0;
   if (wanted)
     measurement->quantities = strut_quantities_create(model, experiment, &measurement->arena);
-  if (!measurement->time || !measurement->x || !measurement->work || !measurement->contact_steps ||
-      !measurement->max_height || !measurement->last_gap || !measurement->gap_before ||
-      (wanted && !measurement->quantities)) {
+  if (!ready || (wanted && !measurement->quantities)) {
     strut_measure_free(measurement);
     return STRUT_NO_MEMORY;
   }

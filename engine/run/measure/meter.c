@@ -11,16 +11,11 @@
 #include "engine/forces/history.h"
 
 bool strut_dense_create(const strut_model *model, strut_arena *arena, strut_dense *matrix) {
-  double **const arrays[] = {&matrix->q,       &matrix->v,    &matrix->begin_q,
-                             &matrix->begin_v, &matrix->a[0], &matrix->a[1]};
   *matrix = (strut_dense){.model = model};
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
-    if (!(*arrays[i] = strut_arena_allocate(arena, (size_t)model->length, sizeof(double))))
-      return false;
-  size_t remembered = strut_history_count(model);
-  matrix->begin_memory = strut_arena_allocate(arena, remembered, sizeof(double));
-  matrix->end_memory = strut_arena_allocate(arena, remembered, sizeof(double));
-  return matrix->begin_memory && matrix->end_memory;
+  return STRUT_NUMBERS(arena, model->length, &matrix->q, &matrix->v, &matrix->begin_q,
+                       &matrix->begin_v, &matrix->a[0], &matrix->a[1]) &&
+         STRUT_NUMBERS(arena, strut_history_count(model), &matrix->begin_memory,
+                       &matrix->end_memory);
 }
 
 void strut_dense_keep(strut_dense *matrix, const strut_state *state) {

@@ -209,14 +209,11 @@ bool strut_step_limit_monitor_create(const strut_model *model, strut_state *stat
   monitor->count = region->sets;
   for (int i = 0; i < region->sets; i++)
     monitor->set[i].stiff = region->set[i].stiff, monitor->set[i].damp = region->set[i].damp;
-  double **const all[] = {&monitor->set[0].motion, &monitor->set[1].motion, &monitor->set[0].image,
-                          &monitor->set[1].image,  &monitor->divided,       &monitor->scratch};
-  monitor->shape = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
-  monitor->rest = strut_arena_allocate(&state->arena, (size_t)model->members.slots, sizeof(double));
-  if (!monitor->shape || !monitor->rest) return false;
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-    if (!(*all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double))))
-      return false;
+  if (!STRUT_NUMBERS(&state->arena, model->length, &monitor->shape, &monitor->set[0].motion,
+                     &monitor->set[1].motion, &monitor->set[0].image, &monitor->set[1].image,
+                     &monitor->divided, &monitor->scratch) ||
+      !STRUT_NUMBERS(&state->arena, model->members.slots, &monitor->rest))
+    return false;
   monitor->every = EVALUATIONS_PER_SAMPLE / method->evaluations;
   monitor->last = monitor->next = state->step;
   for (int i = 0; i < monitor->count; i++) {
@@ -372,14 +369,13 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
     any = any || (has_band(&model->contacts.entry[i]) &&
                   strut_friction_largest(&model->contacts.entry[i].friction) > 0.0);
   if (!any || method->events) return true;
-  size_t length = (size_t)model->length, contacts = (size_t)model->contacts.count;
-  band->a = strut_arena_allocate(&state->arena, length, sizeof(double));
-  band->scratch = strut_arena_allocate(&state->arena, length, sizeof(double));
-  band->contacts = strut_arena_allocate(&state->arena, contacts, sizeof *band->contacts);
   band->tie_count = list_ties(model, NULL);
-  band->ties = strut_arena_allocate(&state->arena, (size_t)band->tie_count, sizeof *band->ties);
-  if (band->ties) list_ties(model, band->ties);
-  return band->a && band->scratch && band->contacts && band->ties;
+  if (!STRUT_ALLOCATE(
+          &state->arena, STRUT_NEW(band->a, model->length), STRUT_NEW(band->scratch, model->length),
+          STRUT_NEW(band->contacts, model->contacts.count), STRUT_NEW(band->ties, band->tie_count)))
+    return false;
+  list_ties(model, band->ties);
+  return true;
 }
 
 void strut_stick_band_sample(const strut_model *model, const strut_state *state,

@@ -264,17 +264,14 @@ strut_quantities *strut_quantities_create(const strut_model *model,
   quantities->count = experiment->quantity_count;
   quantities->observer.see = see_piece;
   quantities->by_periods = strut_experiment_span(experiment, model->scene).period > 0.0;
-  quantities->meters = strut_arena_allocate(arena, quantities->count, sizeof *quantities->meters);
-  quantities->grid =
-      strut_arena_allocate(arena, quantities->count * STRUT_MOST_SAMPLES, sizeof *quantities->grid);
-  quantities->coarse = strut_arena_allocate(arena, quantities->count, sizeof *quantities->coarse);
-  quantities->stack = strut_arena_allocate(arena, depth, sizeof *quantities->stack);
-  quantities->sizes = strut_arena_allocate(arena, columns, sizeof *quantities->sizes);
-  quantities->size_stack = strut_arena_allocate(arena, depth, sizeof *quantities->size_stack);
-  bool ready = quantities->meters && quantities->grid && quantities->coarse && quantities->stack &&
-               quantities->sizes && quantities->size_stack &&
-               strut_columns_create(model, columns, arena, &quantities->columns) &&
-               strut_dense_create(model, arena, &quantities->dense);
+  bool ready =
+      STRUT_ALLOCATE(arena, STRUT_NEW(quantities->meters, quantities->count),
+                     STRUT_NEW(quantities->grid, quantities->count * STRUT_MOST_SAMPLES),
+                     STRUT_NEW(quantities->coarse, quantities->count),
+                     STRUT_NEW(quantities->stack, depth), STRUT_NEW(quantities->sizes, columns),
+                     STRUT_NEW(quantities->size_stack, depth)) &&
+      strut_columns_create(model, columns, arena, &quantities->columns) &&
+      strut_dense_create(model, arena, &quantities->dense);
   for (size_t i = 0; i < quantities->count && ready; i++)
     ready = make_meter(quantities, &experiment->quantities[i], experiment, arena,
                        &quantities->meters[i]);

@@ -43,30 +43,10 @@ void strut_summary_withdraw(strut_summary *summary, const char *code) {
 }
 
 void strut_summary_free(strut_summary *summary) {
-  strut_release(summary->end.node_names);
-  strut_release(summary->end.positions);
-  strut_release(summary->end.contacts);
-  strut_release(summary->end.hinges);
-  strut_release(summary->end.cells);
-  strut_release(summary->end.breaks);
-  summary->end.breaks = NULL;
-  summary->end.break_count = 0;
-  strut_release(summary->end.jumps);
-  summary->end.jumps = NULL;
-  summary->end.jump_count = 0;
-  strut_release(summary->measured);
-  strut_release(summary->derivatives);
-  summary->derivatives = NULL;
-  summary->derivative_count = 0;
-  summary->end.node_names = NULL;
-  summary->end.positions = NULL;
-  summary->end.contacts = NULL;
-  summary->end.hinges = NULL;
-  summary->end.cells = NULL;
-  summary->measured = NULL;
-  summary->end.node_count = summary->end.contact_count = summary->end.hinge_count =
-      summary->end.cell_count = 0;
-  summary->measured_count = 0;
+  strut_arena_free(&summary->arena);
+  memset(&summary->end, 0, sizeof summary->end);
+  summary->measured = NULL, summary->measured_count = 0;
+  summary->derivatives = NULL, summary->derivative_count = 0;
 }
 
 bool strut_summary_is_inaccurate(const strut_summary *summary) {

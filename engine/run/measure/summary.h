@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "engine/base/derivatives.h"
+#include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/scene/channels.h"
 #include "engine/scene/value_rows.h"
@@ -212,7 +213,8 @@ typedef struct strut_summary {
   char caveat[400]; /* why the error of the result is not known, and how to learn it; else empty */
   size_t warning_count;
   strut_warning warnings[STRUT_MOST_WARNINGS];
-  double weight; /* of the whole structure [N] */
+  double weight;     /* of the whole structure [N] */
+  strut_arena arena; /* of all arrays */
 } strut_summary;
 
 /** Rows of a strut_summary: what a run has, and the same with its wall time, which no file has. */

@@ -29,13 +29,11 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
     strut_period_map_free(map);
     return status;
   }
-  map->travels = strut_contacts_allow_travel(&map->model->contacts);
-  for (int32_t i = 0; i < 2 * map->model->node_count; i++)
-    map->travels = map->travels && !map->model->fixed[i];
+  map->travels = strut_model_travels(model);
   return STRUT_OK;
 }
 
-static double mean_along(const strut_model *model, const double *positions) {
+double strut_mean_along_ground(const strut_model *model, const double *positions) {
   const double *t = model->contacts.tangent;
   double sum = 0.0;
   for (int32_t i = 0; i < model->node_count; i++)
@@ -79,7 +77,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   const strut_model *model = map->model;
   strut_state *state = map->state;
   size_t bytes = (size_t)model->length * sizeof(double);
-  double from, to, speed, before = mean_along(model, y);
+  double from, to, speed, before = strut_mean_along_ground(model, y);
   strut_state_reset(model, state);
   state->step = llround(map->time / map->dt);
   memcpy(state->q, y, bytes);
@@ -96,7 +94,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   memcpy(y, state->q, bytes);
   memcpy(y + model->length, state->v, bytes);
   y[2 * model->length] = fmax(0.0, state->refined_until - (double)state->step * map->dt);
-  double shift = map->travels ? mean_along(model, y) - before : 0.0;
+  double shift = map->travels ? strut_mean_along_ground(model, y) - before : 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     y[i] -= shift * model->contacts.tangent[i % 2];
   bool whole =

@@ -50,6 +50,8 @@ bool strut_period_map_spent(const strut_period_map *map);
 /** Size of a difference: the largest of positions over the structure's size, and velocities over
     size times 2 pi f. */
 double strut_period_map_size(const strut_period_map *map, const double *change);
+/** Mean position of the nodes along the ground [m]. */
+double strut_mean_along_ground(const strut_model *model, const double *positions);
 /** NULL-safe on a zeroed map. */
 void strut_period_map_free(strut_period_map *map);
 

@@ -30,19 +30,6 @@ static const double CREEP_DIFFERENCE = 0.025;
 /* Equal growth factors in a row that prove growth. */
 enum { GROWTH_FACTORS = 3 };
 
-/* Do all unlimited signals repeat themselves after n drive periods? */
-static bool drives_repeat(const strut_steady_detector *detector, int32_t n) {
-  const strut_scene *scene = detector->model->scene;
-  for (size_t i = 0; i < scene->signal_count; i++) {
-    const strut_signal *signal = &scene->signals[i];
-    if ((signal->kind != STRUT_SINE && signal->kind != STRUT_SQUARE) || isfinite(signal->stop))
-      continue;
-    double turns = n * detector->period * signal->frequency;
-    if (fabs(turns - round(turns)) > 1e-9 * fmax(1.0, turns)) return false;
-  }
-  return true;
-}
-
 strut_status strut_steady_detector_create(const strut_model *model, const strut_steady *wanted,
                                           double period, double begin,
                                           strut_steady_detector *detector) {
@@ -64,14 +51,10 @@ strut_status strut_steady_detector_create(const strut_model *model, const strut_
   if (detector->rules.successive > STRUT_RING / 2) detector->rules.successive = STRUT_RING / 2;
   if (!(detector->rules.floor > 0.0))
     detector->rules.floor = STANDSTILL * model->size / period * detector->rules.tolerance;
-  detector->travels = strut_contacts_allow_travel(&model->contacts);
-  for (int32_t i = 0; i < 2 * model->node_count; i++)
-    detector->travels = detector->travels && !model->fixed[i];
-  bool ready =
-      (detector->latest.middle = strut_arena_allocate(&detector->arena, both, sizeof(double)));
+  detector->travels = strut_model_travels(model);
+  bool ready = STRUT_NUMBERS(&detector->arena, both, &detector->latest.middle);
   for (int k = 0; k < STRUT_RING && ready; k++)
-    ready =
-        (detector->latest.state[k] = strut_arena_allocate(&detector->arena, both, sizeof(double)));
+    ready = STRUT_NUMBERS(&detector->arena, both, &detector->latest.state[k]);
   detector->rules.least_irregular =
       wanted->mean_tolerance > 0.0 ? LEAST_IRREGULAR / 2 : LEAST_IRREGULAR;
   detector->result.kind = STRUT_MOTION_TRANSIENT;
@@ -224,7 +207,7 @@ static double allowed_change(const strut_steady_detector *detector, double veloc
 static bool repeats_itself(strut_steady_detector *detector, int64_t now, int k) {
   int32_t n = repeats[k], over = detector->rules.successive;
   if (now < 2 * n + over || (double)now < detector->rules.not_before + n + over) return false;
-  if (!drives_repeat(detector, n)) return false;
+  if (!strut_scene_signals_repeat(detector->model->scene, n * detector->period)) return false;
   if (n > 1 && (now < LEAST_PERIODS + 4 * n || still_decays(detector, now, n))) return false;
   int32_t rounds = n * ((over + n - 1) / n);
   double velocity = mean_velocity(detector, now, rounds), change = 0.0;
@@ -266,7 +249,7 @@ static bool creeps(strut_steady_detector *detector, int64_t now) {
   if (!(detector->rules.creep > 0.0) || !detector->travels || now < CREEP_PERIODS ||
       now < detector->rules.creep_after || (double)now < detector->rules.not_before + CREEP_PERIODS)
     return false;
-  if (!drives_repeat(detector, 1)) return false;
+  if (!strut_scene_signals_repeat(detector->model->scene, detector->period)) return false;
   double mean = mean_velocity(detector, now, CREEP_PERIODS), square = 0.0, changes[2] = {0.0};
   for (int i = 0; i < BATCHES; i++) {
     double speed = mean_velocity(detector, now - 3 * i, 3);

@@ -130,12 +130,14 @@ static strut_status read_array(const char *text, const strut_array_task *task, s
   return check(text, *shard, error);
 }
 
-/* Systems that number the tasks of a job in a variable: word, variable, number of the first task. */
+/* Systems that number the tasks of a job in a variable: word, variable, number of the first task; Slurm, whose variable
+   the task has, first. */
 static const struct system {
   const char *word, *variable;
   int64_t first;
   const char *name, *how;
 } systems[] = {
+    {"slurm", "SLURM_ARRAY_TASK_ID", 0, "a Slurm job array", "sbatch --array=0-LAST"},
     {"pbs", "PBS_ARRAY_INDEX", 0, "a PBS job array", "qsub -J 0-LAST"},
     {"torque", "PBS_ARRAYID", 0, "a Torque job array", "qsub -t 0-LAST"},
     {"lsf", "LSB_JOBINDEX", 1, "an LSF job array", "bsub -J \"NAME[1-N]\""},
@@ -153,7 +155,9 @@ static strut_status read_system(const char *text, const struct system *system, c
   if (shard->count < 0)
     return strut_fail(error, STRUT_USAGE, "%s: give the number of shards: %s/N", text,
                       system->word);
-  const char *value = task->variable ? task->variable(system->variable) : NULL;
+  const char *value = system == systems ? task->id
+                      : task->variable  ? task->variable(system->variable)
+                                        : NULL;
   int64_t number = integer_of(value);
   if (number >= system->first) {
     shard->index = number - system->first;
@@ -191,27 +195,20 @@ static bool begins_with(const char *text, const char *word) {
 
 strut_status strut_shard_read(const char *text, const strut_array_task *task, strut_shard *shard,
                               strut_error *error) {
-  static const char slurm[] = "slurm";
   const char *at = text;
-  bool from_slurm = strncmp(text, slurm, strlen(slurm)) == 0;
+  if (strcmp(text, systems[0].word) == 0) return read_array(text, task, shard, error);
   for (size_t i = 0; i < SYSTEMS; i++)
     if (begins_with(text, systems[i].word))
       return read_system(text, &systems[i], text + strlen(systems[i].word), task, shard, error);
   if (strncmp(text, "env:", 4) == 0) return read_variable(text, task, shard, error);
-  if (from_slurm) at += strlen(slurm);
-  if (from_slurm && !*at) return read_array(text, task, shard, error);
-  shard->index = from_slurm ? integer_of(task->id) : take_integer(&at);
+  shard->index = take_integer(&at);
   shard->count = *at == '/' ? integer_of(at + 1) : -1;
-  if (shard->count < 0 || (shard->index < 0 && !from_slurm))
+  if (shard->count < 0 || shard->index < 0)
     return strut_fail(
         error, STRUT_USAGE,
         "expected K/N, slurm, or one of slurm, pbs, torque, lsf, sge, kubernetes and env:VARIABLE "
         "with /N, not '%s'",
         text);
-  if (shard->index < 0)
-    return strut_fail(
-        error, STRUT_USAGE,
-        "%s: this is not a task of a Slurm job array (SLURM_ARRAY_TASK_ID is not set)", text);
   return check(text, *shard, error);
 }
 

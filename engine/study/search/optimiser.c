@@ -48,22 +48,10 @@ static bool look_at_grid(const strut_search_task *task, const strut_search_asker
 
 bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker) {
   if (task->counts) return look_at_grid(task, asker);
-  switch (task->method) {
-    case STRUT_SEARCH_CMA:
-      return strut_search_optimise_by_cma(task, asker, generation_of(task->dimension), SPREAD);
-    case STRUT_SEARCH_NSGA2: return strut_search_optimise_by_nsga2(task, asker);
-    case STRUT_SEARCH_CRS2:
-    case STRUT_SEARCH_DIRECT:
-    case STRUT_SEARCH_ISRES:
-    case STRUT_SEARCH_COBYLA:
-    case STRUT_SEARCH_BOBYQA:
-    case STRUT_SEARCH_SBPLX:
-    case STRUT_SEARCH_NELDERMEAD:
-    case STRUT_SEARCH_BFGS:
-    case STRUT_SEARCH_MULTISTART: return strut_search_optimise_by_nlopt(task, asker);
-    case STRUT_SEARCH_METHOD_COUNT: break;
-  }
-  return true;
+  if (task->method == STRUT_SEARCH_NSGA2) return strut_search_optimise_by_nsga2(task, asker);
+  return task->method == STRUT_SEARCH_CMA
+             ? strut_search_optimise_by_cma(task, asker, generation_of(task->dimension), SPREAD)
+             : strut_search_optimise_by_nlopt(task, asker);
 }
 
 double strut_search_share(uint64_t *state) {

@@ -79,8 +79,6 @@ static int64_t count_all(const conductor *self, int64_t *counts, bool *names) {
 static void free_search(search *self) {
   strut_dialogue_end(self->dialogue);
   strut_release(self->answers);
-  strut_release(self->list);
-  strut_release(self->heads);
   strut_arena_free(&self->arena);
   strut_release(self);
 }
@@ -90,12 +88,13 @@ static search *begin_search(conductor *self, strut_search_outcome *outcome) {
   if (!s) return NULL;
   size_t n = self->layout.variables;
   int64_t most = self->what->evaluations;
-  double *start = strut_arena_allocate(&s->arena, n, sizeof *start);
-  bool *wraps = strut_arena_allocate(&s->arena, n, sizeof *wraps), names;
-  int64_t *counts = strut_arena_allocate(&s->arena, n, sizeof *counts);
+  double *start;
+  bool *wraps, names;
+  int64_t *counts;
   for (s->hashes = 64; s->hashes < 2 * most;) s->hashes *= 2;
-  s->list = strut_allocate((size_t)most, sizeof *s->list);
-  s->heads = strut_allocate(s->hashes, sizeof *s->heads);
+  bool ready =
+      STRUT_ALLOCATE(&s->arena, STRUT_NEW(start, n), STRUT_NEW(wraps, n), STRUT_NEW(counts, n),
+                     STRUT_NEW(s->list, most), STRUT_NEW(s->heads, s->hashes));
   s->outcome = outcome;
   s->task = (strut_search_task){.method = (strut_search_method)self->what->method,
                                 .dimension = n,
@@ -104,7 +103,7 @@ static search *begin_search(conductor *self, strut_search_outcome *outcome) {
                                 .wraps = wraps,
                                 .evaluations = most,
                                 .seed = (uint32_t)(self->what->seed + outcome->start)};
-  if (start && wraps && counts && s->list && s->heads) {
+  if (ready) {
     s->all = count_all(self, counts, &names);
     if (s->all && (s->all <= most || names)) s->task.counts = counts;
     for (uint32_t i = 0; i < s->hashes; i++) s->heads[i] = -1;

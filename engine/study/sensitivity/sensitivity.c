@@ -288,9 +288,9 @@ strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots
   *result = (strut_sensitivity_result){.study = study, .slots = slots};
   size_t count = a.axis->column_count;
   a.block = a.axis->count;
-  a.values = strut_arena_allocate(&a.scratch, (size_t)a.block, sizeof *a.values);
-  a.design = strut_arena_allocate(&a.scratch, 2 * (size_t)a.s->samples + 1, sizeof *a.design);
-  bool fine = a.values && a.design && list_targets(&a);
+  bool fine = STRUT_ALLOCATE(&a.scratch, STRUT_NEW(a.values, a.block),
+                             STRUT_NEW(a.design, 2 * a.s->samples + 1)) &&
+              list_targets(&a);
   a.room = (size_t)(plan->points / a.block) * a.target_count * (4 * count + 2);
   if (fine) result->rows = strut_arena_allocate(&result->arena, a.room + 1, sizeof *result->rows);
   strut_status status = fine && result->rows ? STRUT_OK : STRUT_NO_MEMORY;
@@ -446,11 +446,11 @@ strut_status strut_sensitivity_indices(const double *result, size_t all, size_t 
                                        size_t *used) {
   strut_arena arena = {0};
   samples s;
-  double *value = strut_arena_allocate(&arena, 2 * count, sizeof *value);
-  double *index = strut_arena_allocate(&arena, 2 * count, sizeof *index);
-  double *drawn = strut_arena_allocate(&arena, 2 * count * BOOTSTRAPS, sizeof *drawn);
-  size_t *pick = strut_arena_allocate(&arena, all + 1, sizeof *pick);
-  bool ready = value && index && drawn && pick && take_whole(result, all, count, &arena, &s);
+  double *value, *index, *drawn;
+  size_t *pick;
+  bool ready = STRUT_ALLOCATE(&arena, STRUT_NEW(value, 2 * count), STRUT_NEW(index, 2 * count),
+                              STRUT_NEW(drawn, 2 * count * BOOTSTRAPS), STRUT_NEW(pick, all + 1)) &&
+               take_whole(result, all, count, &arena, &s);
   for (size_t k = 0; k < count; k++) first[k] = total[k] = MISSING;
   *used = ready ? s.used : 0;
   for (size_t j = 0; j < *used; j++) pick[j] = j;

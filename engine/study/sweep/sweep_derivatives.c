@@ -303,7 +303,7 @@ strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_jo
 static strut_status store(const strut_sweep_plan *plan, const strut_setup *setup,
                           const strut_sweep_job *job, strut_summary *summary, strut_error *error) {
   size_t count = plan->derived_count * plan->by_count;
-  summary->derivatives = strut_allocate(count, sizeof *summary->derivatives);
+  summary->derivatives = strut_arena_allocate(&summary->arena, count, sizeof *summary->derivatives);
   if (!summary->derivatives) return strut_no_memory(error, "");
   for (size_t k = 0; k < count; k++) {
     size_t j = k / plan->by_count;

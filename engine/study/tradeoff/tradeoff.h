@@ -69,6 +69,7 @@ typedef struct strut_spread {
 
 /** A variant of the model. The first is the unchanged one. */
 typedef struct strut_model_variant {
+  int kind;         /* what it changes, of tradeoff_models.c */
   char name[120];   /* such as "lumped masses" */
   char remark[600]; /* why it could not be run, or what was assumed; may be empty */
   bool run;

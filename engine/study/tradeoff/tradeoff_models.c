@@ -97,12 +97,9 @@ static void describe(const tradeoff_study *study, kind what, strut_model_variant
            strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
 }
 
-/* The kind of the i-th variant in the list. */
+/* The kind of the i-th variant; the unchanged model may be run before they are listed. */
 static kind kind_of(const tradeoff_study *study, int variant) {
-  int found = -1;
-  for (int what = OWN; what < KINDS; what++)
-    if (makes_sense(&study->setups[0]->scene, (kind)what) && ++found == variant) return (kind)what;
-  return OWN;
+  return variant ? (kind)study->result->variants[variant].kind : OWN;
 }
 
 void strut_tradeoff_list_variants(tradeoff_study *study) {
@@ -113,6 +110,7 @@ void strut_tradeoff_list_variants(tradeoff_study *study) {
   for (int what = OWN; what < KINDS && !study->status; what++) {
     if (!makes_sense(&study->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
     strut_model_variant *variant = &tradeoff->variants[tradeoff->variant_count++];
+    variant->kind = what;
     describe(study, (kind)what, variant);
     variant->floor =
         strut_tradeoff_allocate(study, points * (tradeoff->value_count + 2), sizeof(double));

@@ -361,6 +361,8 @@ void strut_keep_signals(strut_reader *reader) {
   if (!scene->signals) return;
   if (reader->signal_count)
     memcpy(scene->signals, reader->signals, reader->signal_count * sizeof *scene->signals);
+  for (size_t i = 0; i < reader->signal_count; i++)
+    scene->signals[i].unit = strut_keep_unit(reader, reader->signal_state[i].dimension, "1");
   scene->signal_count = reader->signal_count;
 }
 

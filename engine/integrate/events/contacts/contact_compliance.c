@@ -72,9 +72,10 @@ static strut_status make_compliance(const strut_model *model, strut_state *state
   size_t count = 0;
   mark_nodes(model, vector, y, least, answers);
   for (int32_t k = 0; k < model->node_count; k++) count += answers[k];
-  uint32_t *place = strut_arena_allocate(&state->arena, count, sizeof *place);
-  double *xy = strut_arena_allocate(&state->arena, 2 * count, sizeof *xy);
-  if (!place || !xy) return STRUT_NO_MEMORY;
+  uint32_t *place;
+  double *xy;
+  if (!STRUT_ALLOCATE(&state->arena, STRUT_NEW(place, count), STRUT_NEW(xy, 2 * count)))
+    return STRUT_NO_MEMORY;
   for (int32_t k = 0; k < 2 * model->node_count; k += 2) {
     if (!answers[k / 2]) continue;
     place[compliance->count] = (uint32_t)k;
@@ -84,11 +85,8 @@ static strut_status make_compliance(const strut_model *model, strut_state *state
   compliance->at = place, compliance->xy = xy;
   find_own(contacts, vector[at], y[at + 1], compliance);
   if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return STRUT_OK;
-  double *constant = strut_arena_allocate(&state->arena, 2 * count, sizeof *constant);
-  if (!constant) return STRUT_NO_MEMORY;
-  memcpy(constant, xy, 2 * count * sizeof *constant);
-  compliance->constant = constant;
-  return STRUT_OK;
+  compliance->constant = strut_arena_copy(&state->arena, xy, 2 * count, sizeof *xy);
+  return compliance->constant ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 /* The compliance of contact i with sliding masses as they have been placed. */
@@ -184,12 +182,9 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   contacts->passes = c->surface || (c->normal[0] != 0.0 && !model->mass->shared) ? 8 : 1;
   active->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
   size_t room = (size_t)active->stuck_room;
-  active->factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
-  active->work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
-  contacts->body_seen =
-      strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *contacts->body_seen);
-  active->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *active->sliding);
-  if (!active->factor || !active->work || !contacts->body_seen || !active->sliding)
+  if (!STRUT_ALLOCATE(&state->arena, STRUT_NEW(active->factor, room * room),
+                      STRUT_NEW(active->work, c->count), STRUT_NEW(contacts->body_seen, c->count),
+                      STRUT_NEW(active->sliding, c->count)))
     return STRUT_NO_MEMORY;
   return find_bodies(model, stepper);
 }

@@ -13,10 +13,10 @@ strut_event_log *strut_event_log_create(const strut_model *model, strut_arena *a
   log->elements = model->elements.count;
   log->items = log->contacts + log->members + 2 * log->elements;
   log->room = MOST_EVENTS;
-  log->first = strut_arena_allocate(arena, (size_t)log->items + 1, 1);
-  log->now = strut_arena_allocate(arena, (size_t)log->items + 1, 1);
-  log->event = strut_arena_allocate(arena, log->room, sizeof *log->event);
-  return log->first && log->now && log->event ? log : NULL;
+  bool ready =
+      STRUT_ALLOCATE(arena, STRUT_NEW(log->first, log->items + 1),
+                     STRUT_NEW(log->now, log->items + 1), STRUT_NEW(log->event, log->room));
+  return ready ? log : NULL;
 }
 
 static int8_t contact_mode(const strut_event_stepper *stepper, int32_t i) {

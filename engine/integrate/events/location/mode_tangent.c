@@ -32,14 +32,11 @@ bool strut_mode_tangent_possible(const strut_model *model) {
 static bool allocate(const strut_model *model, strut_arena *arena, strut_mode_tangent *tangent) {
   size_t n = (size_t)tangent->n, wide = n * (size_t)tangent->width, length = (size_t)model->length;
   size_t contacts = (size_t)model->contacts.count;
-  return (tangent->inverse = strut_arena_allocate(arena, n * n, sizeof(double))) &&
-         (tangent->force = strut_arena_allocate(arena, wide, sizeof(double))) &&
-         (tangent->rate = strut_arena_allocate(arena, wide, sizeof(double))) &&
-         (tangent->functional = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
-         (tangent->response = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
-         (tangent->place = strut_arena_allocate(arena, length, sizeof(double))) &&
-         (tangent->speed = strut_arena_allocate(arena, length, sizeof(double))) &&
-         (tangent->pull = strut_arena_allocate(arena, (size_t)tangent->width, sizeof(double)));
+  return STRUT_NUMBERS(arena, n * n, &tangent->inverse) &&
+         STRUT_NUMBERS(arena, wide, &tangent->force, &tangent->rate) &&
+         STRUT_NUMBERS(arena, contacts * n, &tangent->functional, &tangent->response) &&
+         STRUT_NUMBERS(arena, length, &tangent->place, &tangent->speed) &&
+         STRUT_NUMBERS(arena, tangent->width, &tangent->pull);
 }
 
 /* M^-1, a column a free coordinate. */
@@ -59,9 +56,8 @@ strut_mode_tangent *strut_mode_tangent_create(const strut_model *model, strut_st
   strut_arena *arena = &state->arena;
   size_t length = (size_t)model->length;
   strut_mode_tangent *tangent = strut_arena_allocate(arena, 1, sizeof *tangent);
-  if (!tangent ||
-      !(tangent->coordinate = strut_arena_allocate(arena, length, sizeof *tangent->coordinate)) ||
-      !(tangent->row_of = strut_arena_allocate(arena, length, sizeof *tangent->row_of)))
+  if (!tangent || !STRUT_ALLOCATE(arena, STRUT_NEW(tangent->coordinate, length),
+                                  STRUT_NEW(tangent->row_of, length)))
     return NULL;
   tangent->n = strut_number_free(model, NULL, tangent->row_of, tangent->coordinate);
   tangent->width = (2 * tangent->n + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;

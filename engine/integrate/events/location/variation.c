@@ -23,16 +23,11 @@ strut_variation *strut_variation_create(const strut_model *model, strut_state *s
   variation->place = variation->tangent->coordinate;
   size_t rows = 2 * (size_t)variation->n, all = rows * (size_t)variation->stride,
          length = (size_t)model->length;
-  bool good =
-      (variation->columns = strut_arena_allocate(arena, all, sizeof(double))) &&
-      (variation->middle = strut_arena_allocate(arena, all, sizeof(double))) &&
-      (variation->delay = strut_arena_allocate(arena, (size_t)variation->stride, sizeof(double))) &&
-      (variation->gradient =
-           strut_arena_allocate(arena, (size_t)variation->stride, sizeof(double))) &&
-      (variation->before = strut_arena_allocate(arena, (size_t)variation->n, sizeof(double))) &&
-      (variation->stage_q = strut_arena_allocate(arena, length, sizeof(double))) &&
-      (variation->drift = strut_arena_allocate(arena, length, sizeof(double))) &&
-      (variation->slope = strut_arena_allocate(arena, MOST_STAGES, sizeof *variation->slope));
+  bool good = STRUT_NUMBERS(arena, all, &variation->columns, &variation->middle) &&
+              STRUT_NUMBERS(arena, variation->stride, &variation->delay, &variation->gradient) &&
+              STRUT_NUMBERS(arena, variation->n, &variation->before) &&
+              STRUT_NUMBERS(arena, length, &variation->stage_q, &variation->drift) &&
+              STRUT_ALLOCATE(arena, STRUT_NEW(variation->slope, MOST_STAGES));
   for (int k = 0; k < MOST_STAGES && good; k++)
     good = (variation->slope[k] = strut_arena_allocate(arena, all, sizeof(double)));
   return good ? variation : NULL;
