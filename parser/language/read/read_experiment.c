@@ -225,29 +225,14 @@ static void read_state(strut_reader *reader, int32_t configuration) {
                         STRUT_DIM_VELOCITY, store_velocity);
 }
 
-/* An equilibrium determines all positions, and that the structure is at rest. */
-static void read_equilibrium(strut_reader *reader) {
-  static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
-                               STRUT_KEY_INITIAL_SETTLE};
-  const strut_slot *equilibrium = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_EQUILIBRIUM);
-  int32_t index = find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
-  for (size_t i = 0; equilibrium->key && i < sizeof rivals / sizeof rivals[0]; i++) {
-    const strut_slot *rival = strut_slot_of(&reader->initial, rivals[i]);
-    if (!rival->key) continue;
-    strut_report_error(reader, rival->key->place,
-                       "the initial state gives both 'equilibrium' and '%s', expected one of them",
-                       rival->key->text);
-    return;
-  }
-  reader->scene->start_equilibrium = index;
-}
-
 void strut_read_initial(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_SECTION_INITIAL,
                           "the initial state", &reader->initial))
     return;
   read_state(reader, find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
-  read_equilibrium(reader);
+  /* An equilibrium determines all positions, and that the structure is at rest. */
+  int32_t equilibrium = find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  if (strut_check_rules(reader, &reader->initial)) reader->scene->start_equilibrium = equilibrium;
   read_switch(reader, &reader->initial, STRUT_KEY_INITIAL_SETTLE, "the initial state",
               (strut_owner){"the settling", NULL}, &reader->settle);
 }
@@ -308,19 +293,11 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
 static void read_of(strut_reader *reader) {
   strut_experiment *experiment = reader->experiment;
   const strut_tree *of = strut_given(&reader->run, STRUT_KEY_RUN_OF);
-  strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
   bool broken = false;
-  if (!strut_mentions(&reader->run, STRUT_KEY_RUN_OF) &&
-      strut_given(&reader->run, STRUT_KEY_RUN_PERIODS)) {
-    strut_report_error(
-        reader, top->key->place,
-        "the run lacks 'of', expected the actuator, load or signal whose periods count");
-    reader->run.broken = true;
-  } else if (of && strut_mentions(&reader->run, STRUT_KEY_RUN_PERIODS)) {
-    experiment->period_signal = find_signal_of(reader, of, &broken);
-    experiment->period_of = strut_keep_text(reader, of->text);
-    if (broken) reader->run.broken = true;
-  }
+  if (!of || !strut_mentions(&reader->run, STRUT_KEY_RUN_PERIODS)) return;
+  experiment->period_signal = find_signal_of(reader, of, &broken);
+  experiment->period_of = strut_keep_text(reader, of->text);
+  if (broken) reader->run.broken = true;
 }
 
 /* The length of a window: in periods if the run is in periods, otherwise in seconds. */
@@ -468,15 +445,6 @@ static bool read_until(strut_reader *reader, strut_fields *fields, strut_dimensi
   const strut_slot *until = strut_slot_of(fields, STRUT_KEY_STAGE_UNTIL);
   bool given = until->state == STRUT_GIVEN;
   stage->until = stage->load ? 1.0 : 0.0;
-  if (stage->release && given)
-    return strut_report_error(reader, until->key->place,
-                              "%s gives 'until' beside 'release', which ends without reaction",
-                              strut_owner_text(reader, fields->owner));
-  if (stage->over && !given)
-    return strut_report_error(reader, strut_slot_of(fields, STRUT_KEY_STAGE_OVER)->key->place,
-                              "%s lacks 'until', the end value of '%s'",
-                              strut_owner_text(reader, fields->owner),
-                              strut_sanitised_text(reader, stage->over));
   return !given || strut_read_number(reader, until->value, "until", fields->owner, dimension,
                                      STRUT_WITHIN(ANY), &stage->until);
 }
@@ -512,9 +480,6 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
                               strut_found(reader, item));
   bool fine = strut_read_object(reader, STRUT_SECTION_STAGE, item, owner, &fields, stage);
   if (fields.broken) return false;
-  if (!strut_given(&fields, STRUT_KEY_STAGE_LOAD) && !stage->over && !stage->release)
-    return strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'",
-                              owner.kind);
   fine = read_followed(reader, &fields, stage, &dimension) &&
          read_until(reader, &fields, dimension, stage) && fine;
   return read_stop(reader, strut_given(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;
@@ -575,10 +540,6 @@ void strut_read_stages(strut_reader *reader) {
   if (path.broken) return;
   strut_store(reader, &path, experiment);
   const strut_tree *stages = strut_given(&path, STRUT_KEY_SCENE_PATH_STAGES);
-  if (!strut_mentions(&path, STRUT_KEY_SCENE_PATH_STAGES) &&
-      !strut_mentions(&path, STRUT_KEY_SCENE_PATH_FRICTION))
-    strut_report_error(reader, value->place,
-                       "the path lacks 'stages', expected a list of stages such as [{load: NAME}]");
   if (!stages) return;
   if (stages->kind != STRUT_TREE_LIST || !stages->count) {
     strut_report_error(reader, stages->place,

@@ -77,23 +77,12 @@ static bool read_of(strut_reader *reader, const strut_tree *value, strut_owner o
 
 bool strut_read_sensor(strut_reader *reader, strut_fields *fields, void *object) {
   strut_sensor *sensor = object;
-  const strut_slot *along = strut_slot_of(fields, STRUT_KEY_SENSOR_ALONG);
-  const strut_tree *of = strut_given(fields, STRUT_KEY_SENSOR_OF);
+  const strut_tree *along = strut_given(fields, STRUT_KEY_SENSOR_ALONG),
+                   *of = strut_given(fields, STRUT_KEY_SENSOR_OF);
   if (fields->broken || (of && !read_of(reader, of, fields->owner, sensor))) return false;
   strut_column_kind kind = strut_sensor_column(sensor).kind;
   bool directed = kind >= STRUT_COLUMN_NODE_X && kind <= STRUT_COLUMN_NODE_VY;
-  if (kind == STRUT_COLUMN_TIME)
-    strut_report_error(reader, fields->key->place,
-                       "sensor '%s' senses nothing; write one of length, force, angle, contact, "
-                       "position, velocity, energy, area, pressure, distance, contact_force and "
-                       "collision_force, such as {length: MEMBER}, or any column: {of: com.vy}",
-                       fields->key->text);
-  else if (directed && !sensor->length && along->state == STRUT_ABSENT)
-    strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",
-                       fields->key->text);
-  else
-    return !directed || turn_sensor(reader, sensor->length ? of : along->value, sensor);
-  return false;
+  return !directed || turn_sensor(reader, of ? of : along, sensor);
 }
 
 /* ---- expressions ---- */

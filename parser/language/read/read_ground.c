@@ -419,22 +419,6 @@ static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
 
 /* ---- shape and motion ---- */
 
-/* Keys of a line beside those of another shape. */
-static bool shape_is_alone(strut_reader *reader, strut_fields *fields) {
-  static const int of_lines[] = {STRUT_KEY_GROUND_HEIGHT, STRUT_KEY_GROUND_SLOPE,
-                                 STRUT_KEY_GROUND_THROUGH, STRUT_KEY_GROUND_NORMAL};
-  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
-  const strut_slot *shape = profile->key ? profile : strut_slot_of(fields, STRUT_KEY_GROUND_CIRCLE);
-  for (size_t i = 0; shape->key && i < sizeof of_lines / sizeof of_lines[0]; i++) {
-    const strut_slot *slot = strut_slot_of(fields, of_lines[i]);
-    if (!slot->key) continue;
-    return strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
-                              strut_owner_text(reader, fields->owner), shape->key->text,
-                              slot->key->text);
-  }
-  return true;
-}
-
 /* The slope of a line by its normal vector. */
 static bool read_normal(strut_reader *reader, strut_fields *fields, strut_ground_section *section) {
   strut_ground *ground = &section->ground;
@@ -532,8 +516,7 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_place pla
                      strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, place);
   strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
-  if (!strut_store(reader, fields, &section) || !shape_is_alone(reader, fields) ||
-      !read_normal(reader, fields, &section))
+  if (!strut_store(reader, fields, &section) || !read_normal(reader, fields, &section))
     fields->broken = true;
   note_steep(reader, strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE));
   *ground = section.ground;

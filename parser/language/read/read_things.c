@@ -15,6 +15,7 @@ typedef struct kind {
   strut_section section; /* of its things; not used with `read` */
   int group;             /* the key that names groups, or -1 */
   bool joins;    /* it uses nodes: where it names unknown ones, others are not reported as unused */
+  bool chooses;  /* and says which in several ways, so that it may be a fault of any of its keys */
   bool heavy;    /* it may have mass */
   bool variable; /* expressions use its name */
   strut_thing_reader *read;
@@ -25,11 +26,12 @@ static const kind kinds[STRUT_THING_COUNT] = {
     [STRUT_THING_MEMBER] = {STRUT_KEY_SCENE_MEMBERS, STRUT_SECTION_MEMBER, STRUT_KEY_MEMBER_GROUP,
                             .joins = true},
     [STRUT_THING_HINGE] = {STRUT_KEY_SCENE_HINGES, STRUT_SECTION_HINGE, STRUT_KEY_HINGE_GROUP,
-                           .joins = true},
+                           .joins = true, .chooses = true},
     [STRUT_THING_CELL] = {STRUT_KEY_SCENE_CELLS, STRUT_SECTION_CELL, -1, .joins = true},
     [STRUT_THING_COLLISION] = {STRUT_KEY_SCENE_COLLISIONS, STRUT_SECTION_COLLISION, -1,
-                               .joins = true},
-    [STRUT_THING_DISTANCE] = {STRUT_KEY_SCENE_DISTANCES, STRUT_SECTION_DISTANCE, -1, .joins = true},
+                               .joins = true, .chooses = true},
+    [STRUT_THING_DISTANCE] = {STRUT_KEY_SCENE_DISTANCES, STRUT_SECTION_DISTANCE, -1, .joins = true,
+                              .chooses = true},
     [STRUT_THING_FOOT] = {STRUT_KEY_SCENE_FEET, STRUT_SECTION_FOOT, -1},
     [STRUT_THING_ACTUATOR] = {STRUT_KEY_SCENE_ACTUATORS, STRUT_SECTION_ACTUATOR, -1},
     [STRUT_THING_LOAD] = {STRUT_KEY_SCENE_LOADS, STRUT_SECTION_LOAD, -1, .joins = true},
@@ -87,6 +89,7 @@ static bool read_thing(strut_reader *reader, strut_thing thing, const strut_tree
   if (self->group >= 0) strut_apply_groups(reader, &fields, self->group);
   strut_require(reader, &fields, key->place);
   fine = strut_store_fields(reader, &fields, object, row->size) && fine && !fields.broken;
+  if (self->chooses && fields.broken) fields.unresolved = true;
   if (fields.unresolved && self->joins) reader->ends_unknown = true;
   if (!fine && self->heavy) reader->masses_unknown = true;
   return fine && !fields.unresolved;
@@ -149,7 +152,6 @@ static strut_section_reader *const by_hand[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_MEMBER] = strut_read_member,
     [STRUT_SECTION_HINGE] = strut_read_hinge,
     [STRUT_SECTION_CELL] = strut_read_cell,
-    [STRUT_SECTION_COLLISION] = strut_read_collision,
     [STRUT_SECTION_DISTANCE] = strut_read_distance,
     [STRUT_SECTION_ACTUATOR] = strut_read_actuator,
     [STRUT_SECTION_LOAD] = strut_read_load,
@@ -398,7 +400,7 @@ bool strut_store_fields(strut_reader *reader, strut_fields *fields, void *object
                         size_t object_size) {
   int size = strut_section_size(fields->section);
   const strut_key *keys = strut_key_at(strut_section_first(fields->section));
-  bool fine = strut_check_companions(reader, fields);
+  bool fine = strut_check_rules(reader, fields);
   for (int i = 0; i < size; i++) {
     strut_slot *slot = &fields->slot[i];
     bool given = slot->state == STRUT_GIVEN;

@@ -13,16 +13,21 @@
 /* Longest text from the file in a message, and most names compared for suggestions. */
 enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 255 };
 
+void strut_report_text(strut_reader *reader, strut_place place, const char *origin,
+                       const char *text) {
+  reader->failed = true;
+  if (strut_error_is_repeated(reader, place, origin)) return;
+  strut_diagnose(reader->diagnostics, place, "%s", text);
+  strut_error_remember(reader, place, origin);
+}
+
 bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
   char text[1200] = "";
   va_list arguments;
-  reader->failed = true;
-  if (strut_error_is_repeated(reader, place, format)) return false;
   va_start(arguments, format);
   if (!strut_diagnostics_full(reader->diagnostics)) vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  strut_diagnose(reader->diagnostics, place, "%s", text);
-  strut_error_remember(reader, place, format);
+  strut_report_text(reader, place, format, text);
   return false;
 }
 

@@ -39,6 +39,7 @@ typedef struct strut_fields {
   strut_section section;
   strut_owner owner;          /* what messages call it */
   bool broken;                /* some value, or the mapping itself, could not be read */
+  bool strange;               /* it has an unknown key, which may mean any that is missing */
   bool unresolved;            /* a thing that it must name is not known */
   const strut_tree *map;      /* NULL: the mapping is absent */
   const strut_tree *key;      /* whose value it is, where reading needs its place */
@@ -195,6 +196,9 @@ bool strut_tree_is_study(const strut_tree *root);
  */
 bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/** Reports a text that is there already; of those with one `origin` at one place, those of further copies are counted. */
+void strut_report_text(strut_reader *reader, strut_place place, const char *origin,
+                       const char *text);
 /** "member 'm1'", for use within a message; lives in scratch. */
 const char *strut_owner_text(strut_reader *reader, strut_owner owner);
 /** Text from the file, shortened and without control characters; lives in scratch. */
@@ -361,8 +365,11 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
 const strut_tree *strut_entries(strut_reader *reader, int key);
 size_t strut_entry_count(strut_reader *reader, int key);
 
-/** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
-bool strut_check_companions(strut_reader *reader, strut_fields *fields);
+/**
+ * Reports keys that mean nothing without another one, of which those of a group or of a base become absent, and what
+ * breaks STRUT_KEY_RULES. False: something does; then the fields are broken.
+ */
+bool strut_check_rules(strut_reader *reader, strut_fields *fields);
 /** What a study must compute for a key of it to mean anything, "modes|path"; NULL: anything. */
 const char *strut_study_key_computes(int key);
 
@@ -512,9 +519,9 @@ bool strut_read_data_point(strut_reader *reader, const strut_tree *map, strut_ow
 /** A thing whose value may be more than a mapping. False: it could not be read. */
 typedef bool strut_thing_reader(strut_reader *reader, const strut_tree *key, void *object);
 strut_thing_reader strut_read_node, strut_read_configuration;
-strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_collision,
-    strut_read_distance, strut_read_actuator, strut_read_load, strut_read_unbalance,
-    strut_read_slider, strut_read_sensor, strut_read_trigger;
+strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_distance,
+    strut_read_actuator, strut_read_load, strut_read_unbalance, strut_read_slider,
+    strut_read_sensor, strut_read_trigger;
 
 /** The law of a member or a hinge, whose strain and force have these dimensions. */
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,

@@ -122,8 +122,6 @@ static bool read_range(strut_study_reader *reader, along *self) {
   fine = strut_study_store_value(reader, self, &fields, STRUT_KEY_RANGE_TO, false, &keys) && fine;
   fine = strut_study_store_value(reader, self, &fields, STRUT_KEY_RANGE_STEP, false, &keys) && fine;
   self->column->from = keys.from, self->column->to = keys.to, self->column->step = keys.step;
-  bool stepped = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP)->state == STRUT_GIVEN;
-  if (!stepped && keys.count == 0.0) return refuse_range(reader, self, "lacks 'step' or 'count'");
   if (!fine) return false;
   if (keys.count > 0.0) return count_even(reader, self, keys.count, keys.scale == 1);
   if (keys.scale == 1)
@@ -433,11 +431,7 @@ static void require_pairs(strut_study_reader *reader, strut_fields *top) {
 
 void strut_study_read_goals(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *shape = strut_slot_of(top, STRUT_KEY_STUDY_SHAPE);
-  const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
   const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
-  if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
-    strut_report_error(reader->reader, like->key->place,
-                       "'shape' and 'like' of the study exclude each other");
   if (shape->state == STRUT_GIVEN) read_shape(reader, shape);
   if (curve->state == STRUT_GIVEN) read_curve(reader, curve);
   if (curve->state == STRUT_GIVEN && reader->file->study.compute == STRUT_COMPUTE_PATH &&
@@ -451,30 +445,6 @@ void strut_study_read_goals(strut_study_reader *reader, strut_fields *top) {
 /* ---- motions that are followed ---- */
 
 static const strut_owner follow_owner = {"what is followed", NULL};
-
-void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
-                         const int *keys, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    const strut_slot *slot = strut_slot_of(top, keys[i]);
-    if (slot->state == STRUT_GIVEN)
-      strut_report_error(reader->reader, slot->key->place,
-                         "'%s' and '%s' exclude each other: use two studies", slot->key->text,
-                         own->key->text);
-  }
-}
-
-/* Keys that choose or judge points in another way. */
-static void refuse_others(strut_study_reader *reader, strut_fields *top, const strut_slot *own) {
-  static const int others[] = {
-      STRUT_KEY_STUDY_REFINE,      STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_SEARCH,
-      STRUT_KEY_STUDY_SENSITIVITY, STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_CHECK,
-      STRUT_KEY_STUDY_LIMIT,       STRUT_KEY_STUDY_SHAPE,        STRUT_KEY_STUDY_LIKE};
-  strut_study_exclude(reader, top, own, others, sizeof others / sizeof others[0]);
-  const strut_slot *compute = strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE);
-  if (compute->state == STRUT_GIVEN && reader->file->study.compute != STRUT_COMPUTE_RUN)
-    strut_report_error(reader->reader, compute->value->place,
-                       "a study that follows motions computes no '%s'", compute->value->text);
-}
 
 /* Both ends of the range, and values within it. */
 static void read_values(strut_study_reader *reader, strut_fields *fields, strut_study_along *a,
@@ -531,7 +501,10 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  refuse_others(reader, top, slot);
+  const strut_slot *compute = strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE);
+  if (compute->state == STRUT_GIVEN && study->compute != STRUT_COMPUTE_RUN)
+    strut_report_error(reader->reader, compute->value->place,
+                       "a study that follows motions computes no '%s'", compute->value->text);
   strut_study_follow *follow = strut_study_allocate(reader, 1, sizeof *follow);
   if (!follow) return;
   strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,

@@ -253,13 +253,6 @@ static void choose_kind(reading *self) {
              : table   ? STRUT_FIT_TABLE
                        : STRUT_FIT_REST;
   if (curve) to->compute = STRUT_COMPUTE_PATH;
-  if (over_time + curve + table > 1)
-    strut_report_error(self->reader, self->rest->place,
-                       "match '%s' can have only one of 'time', 'displacement' and 'compute'",
-                       to->name);
-  if (align->state == STRUT_GIVEN && (curve || table))
-    strut_report_error(self->reader, align->key->place,
-                       "'align' of match '%s' is for motions and shapes", to->name);
   if (to->align.delay && !over_time)
     strut_report_error(self->reader, align->value->place, "a delay needs the 'time' of a motion");
 }
@@ -289,8 +282,6 @@ static const strut_tree *read_match(strut_study_reader *study, const strut_tree 
   choose_kind(&self);
   read_noise(&self);
   bool curve = to->kind == STRUT_FIT_CURVE;
-  if (curve && force->state == STRUT_ABSENT)
-    strut_report_error(r, key->place, "match '%s' of a displacement lacks 'force'", to->name);
   if (curve && first)
     strut_report_error(r, first->place,
                        "a match of a displacement compares its 'force' alone, not '%s'",
@@ -449,16 +440,10 @@ static void refuse_unused(strut_study_reader *reader, strut_fields *top,
 }
 
 void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
-  static const int others[] = {STRUT_KEY_STUDY_AXES,         STRUT_KEY_STUDY_VARIANTS,
-                               STRUT_KEY_STUDY_REFINE,       STRUT_KEY_STUDY_SEARCH,
-                               STRUT_KEY_STUDY_FOLLOW,       STRUT_KEY_STUDY_SENSITIVITY,
-                               STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_CHECK,
-                               STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_COMPUTE};
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_FIT);
   strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
   strut_study_fit *fit = strut_study_allocate(reader, 1, sizeof *fit);
   if (!fit || !study->axes || reader->reader->failed) return;
   *fit = (strut_study_fit){.starts = 8, .seed = 1};

@@ -112,7 +112,3 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top);
 
 /** Reads what is followed, after the axes. Nothing without it. */
 void strut_study_read_follow(strut_study_reader *reader, strut_fields *top);
-
-/** Reports those of the keys that are given: the study has `own`, which excludes them. */
-void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
-                         const int *keys, size_t count);

@@ -215,19 +215,14 @@ static void read_goals(strut_study_reader *reader, const strut_tree *value,
   if (two) keep_text(first->next, &search->second);
 }
 
-static void read_goal(strut_study_reader *reader, strut_fields *fields, const strut_slot *slot,
+static void read_goal(strut_study_reader *reader, strut_fields *fields,
                       strut_study_search *search) {
   const strut_slot *most = strut_slot_of(fields, STRUT_KEY_SEARCH_MAXIMISE);
   const strut_slot *least = strut_slot_of(fields, STRUT_KEY_SEARCH_MINIMISE);
   const strut_slot *method = strut_slot_of(fields, STRUT_KEY_SEARCH_METHOD);
   search->maximise = most->state == STRUT_GIVEN;
   const strut_slot *goal = search->maximise ? most : least;
-  if (goal->state == STRUT_GIVEN)
-    read_goals(reader, goal->value, search);
-  else if (!fields->broken)
-    strut_report_error(reader->reader, slot->value->place,
-                       "the search lacks 'maximise' or 'minimise', a column of the table or an "
-                       "expression of columns");
+  if (goal->state == STRUT_GIVEN) read_goals(reader, goal->value, search);
   bool two = search->second.text != NULL, given = method->state == STRUT_GIVEN;
   if (given && goal->state == STRUT_GIVEN && two != (search->method == STRUT_SEARCH_NSGA2))
     strut_report_error(reader->reader, method->value->place,
@@ -279,17 +274,13 @@ static void choose_derivatives(strut_study_reader *reader, strut_fields *fields,
         "whole numbers and 'worst_over'; give another method");
 }
 
-/* Keys of a study that a search has no use for. */
-static void refuse_others(strut_study_reader *reader, const strut_slot *slot) {
+static void refuse_trajectories(strut_study_reader *reader, const strut_slot *slot) {
   const strut_study *study = &reader->file->study;
   const strut_tree *root = reader->file->document.root;
   strut_tree *key = NULL;
   if (study->trajectories && strut_tree_find(root, "trajectories", &key))
     strut_report_error(reader->reader, key ? key->place : slot->key->place,
                        "a study that searches records no trajectories: run its best.yaml for that");
-  if (strut_tree_find(root, "refine", &key))
-    strut_report_error(reader->reader, key ? key->place : slot->key->place,
-                       "a study that searches has no grid to refine");
 }
 
 void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot) {
@@ -301,9 +292,9 @@ void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot)
   *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
   strut_read_object(reader->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields,
                     search);
-  read_goal(reader, &fields, slot, search);
+  read_goal(reader, &fields, search);
   read_conditions(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
-  refuse_others(reader, slot);
+  refuse_trajectories(reader, slot);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SEARCH_OVER);
   const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_SEARCH_STARTS);
   if (search->method == STRUT_SEARCH_DIRECT && search->starts > 1)
