@@ -440,13 +440,11 @@ void strut_read_groups(strut_reader *reader) {
   size_t i = 0;
   if (!map) return;
   reader->groups = strut_scratch_array(reader, map->count, sizeof *reader->groups);
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, reader->groups ? map : NULL) {
     reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
   }
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
-       key = strut_following_entry(reader, key))
+  STRUT_ENTRIES (reader, key, reader->groups ? map : NULL)
     read_group(reader, key, &reader->groups[i++]);
 }
 

@@ -147,8 +147,7 @@ bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t 
 void strut_list_controllers(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONTROLLERS);
   if (!map || !reader->named) return;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     if (!strut_check_variable_name(reader, key, "controller")) continue;
     if (strut_name_map_find(&reader->signal_names, key->text) >= 0)
       strut_report_error(reader, key->place, "there is a signal '%s' already", key->text);
@@ -401,7 +400,5 @@ void strut_read_pipes(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_PIPES);
   if (!map || !reader->scene->sensors || !reader->scene->states) return;
   reader->pipe_drives = strut_scratch_array(reader, 2 * map->count, sizeof *reader->pipe_drives);
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->pipe_drives;
-       key = strut_following_entry(reader, key))
-    read_pipe(reader, key);
+  STRUT_ENTRIES (reader, key, reader->pipe_drives ? map : NULL) read_pipe(reader, key);
 }

@@ -383,8 +383,7 @@ void strut_read_experiment(strut_reader *reader) {
 int32_t strut_read_coordinate(strut_reader *reader, const strut_tree *value, const char *key,
                               strut_owner owner) {
   if (value->kind != STRUT_TREE_SCALAR) {
-    strut_report_error(reader, value->place, "expected NODE.x or NODE.y for '%s' of %s, found %s",
-                       key, strut_owner_text(reader, owner), strut_found(reader, value));
+    strut_refuse_value(reader, value, key, owner, "NODE.x or NODE.y");
     return -1;
   }
   int32_t at = strut_coordinate_find(reader->scene, value->text);
@@ -455,9 +454,7 @@ static bool read_stop(strut_reader *reader, const strut_tree *map, strut_owner o
   stage->stop = -1;
   if (!map) return true;
   if (map->kind != STRUT_TREE_MAP || map->count != 1)
-    return strut_report_error(reader, map->place,
-                              "expected {NODE.x: LENGTH} for 'stop' of %s, found %s",
-                              strut_owner_text(reader, owner), strut_found(reader, map));
+    return strut_refuse_value(reader, map, "stop", owner, "{NODE.x: LENGTH}");
   stage->stop = strut_read_coordinate(reader, map->first, "stop", owner);
   if (stage->stop < 0 ||
       !strut_read_number(reader, map->first->next, "stop", owner, STRUT_DIM_LENGTH,

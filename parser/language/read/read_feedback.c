@@ -238,8 +238,7 @@ static bool read_phase(strut_reader *reader, const strut_tree *key, strut_quanti
 
 static void list_states(strut_reader *reader, int of, bool oscillators) {
   const strut_tree *map = strut_entries(reader, of);
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     strut_quantity q = {.bare = true};
     bool fine = strut_check_variable_name(reader, key, oscillators ? "oscillator" : "state");
     fine = (oscillators ? read_phase(reader, key, &q) : read_start(reader, key, &q)) && fine;
@@ -282,8 +281,7 @@ static bool read_rate(strut_reader *reader, const strut_tree *key, size_t state)
 
 static void read_rates(strut_reader *reader, int of, bool oscillators) {
   const strut_tree *map = strut_entries(reader, of);
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
     strut_source *source = i < 0 ? NULL : &reader->things[STRUT_THING_STATE].source[i];
     if (!source || source->broken) continue;

@@ -314,8 +314,7 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, const unsig
 static bool add_copied(strut_reader *reader, unsigned char *touches, const strut_tree **entry) {
   bool fine = true;
   const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     strut_owner owner = {"part", reader->scope ? reader->scope->placement->part->name : NULL};
     strut_tree name = *key;
     name.text = strut_local_name(reader, key->text);
@@ -397,9 +396,8 @@ static void read_friction(strut_reader *reader, strut_fields *fields, ground_def
                         .signal = -1,
                         .reported = &defaults->reported};
   if (!friction) return;
-  const char *owner =
-      strut_kept_text(reader, "the friction of %.150s", strut_owner_text(reader, fields->owner));
-  strut_read_fields(reader, STRUT_SECTION_FRICTION, friction, (strut_owner){owner, NULL}, &layer);
+  strut_owner owner = strut_owner_within(reader, "friction", fields->owner);
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, friction, owner, &layer);
   add_layer(reader, &defaults->friction, &layer);
 }
 

@@ -73,9 +73,7 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
   if (!time || !value) return false;
   for (const strut_tree *point = list->first; point; point = point->next) {
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      fine = strut_report_error(reader, point->place,
-                                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
-                                strut_owner_text(reader, owner), strut_found(reader, point));
+      fine = strut_refuse_value(reader, point, "table", owner, "a point such as [0.1 s, 2]");
       continue;
     }
     size_t i = signal->point_count++;
@@ -298,10 +296,8 @@ int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension
 
 int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                           strut_owner owner, const strut_dimension *expected) {
-  char text[200];
-  snprintf(text, sizeof text, "the signal of %.150s", strut_owner_text(reader, owner));
-  strut_owner within = value->kind == STRUT_TREE_MAP ? (strut_owner){text, NULL} : owner;
-  return read_signal(reader, value, key, within, expected);
+  if (value->kind == STRUT_TREE_MAP) owner = strut_owner_within(reader, "signal", owner);
+  return read_signal(reader, value, key, owner, expected);
 }
 
 void strut_list_signal(strut_reader *reader, const strut_tree *key, bool controller) {

@@ -210,9 +210,7 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
   for (const strut_tree *point = fine ? list->first : NULL; point; point = point->next) {
     size_t i = law->count++;
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      fine = strut_report_error(reader, point->place,
-                                "expected a point such as [2 mm, 3 N] for '%s' of %s, found %s",
-                                key, strut_owner_text(reader, owner), strut_found(reader, point));
+      fine = strut_refuse_value(reader, point, key, owner, "a point such as [2 mm, 3 N]");
       continue;
     }
     fine = strut_read_number(reader, point->first, key, owner, strain, STRUT_WITHIN(ANY), &x[i]) &&
@@ -280,9 +278,7 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   if (slot->state == STRUT_ABSENT) return true;
   if (slot->state != STRUT_GIVEN) return false;
   if (slot->value->kind == STRUT_TREE_SCALAR) return read_word(reader, slot->value, owner, law);
-  char text[200];
-  snprintf(text, sizeof text, "the law of %.150s", strut_owner_text(reader, owner));
-  strut_owner within = {text, NULL};
+  strut_owner within = strut_owner_within(reader, "law", owner);
   strut_read_fields(reader, STRUT_SECTION_LAW, slot->value, within, &fields);
   const strut_tree *coefficients = strut_given(&fields, STRUT_KEY_LAW_COEFFICIENTS),
                    *data = strut_given(&fields, STRUT_KEY_LAW_DATA);

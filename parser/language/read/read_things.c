@@ -136,8 +136,7 @@ void strut_read_things(strut_reader *reader, strut_thing thing) {
   size_t most = (map ? map->count : 0) + (of_pipes ? strut_pipes_most(reader) : 0);
   if (!most || !strut_reserve_things(reader, thing, most) || !map) return;
   strut_reserve_names(reader, &things->names, map->count);
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     const char *name = strut_keep_text(reader, key->text);
     size_t i = strut_thing_count(reader->scene, thing);
     void *object = strut_add_thing(reader, thing, key, name);
@@ -328,12 +327,10 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
 
 bool strut_read_nested(strut_reader *reader, const strut_key *key, strut_fields *outer,
                        void *object, size_t object_size) {
-  char text[200];
   strut_fields fields;
   const strut_slot *slot = &outer->slot[key - strut_key_at(strut_section_first(key->section))];
-  snprintf(text, sizeof text, "the %s of %.150s", *key->words ? key->words : key->name,
-           strut_owner_text(reader, outer->owner));
-  strut_owner within = {text, NULL};
+  strut_owner within =
+      strut_owner_within(reader, *key->words ? key->words : key->name, outer->owner);
   strut_read_fields(reader, strut_section_below(key), slot->value, within, &fields);
   fields.key = slot->key, fields.outer = outer;
   strut_require(reader, &fields, slot->key->place);

@@ -113,6 +113,11 @@ const char *strut_owner_text(strut_reader *reader, strut_owner owner) {
                           strut_sanitised_text(reader, strut_local_name(reader, owner.name))));
 }
 
+strut_owner strut_owner_within(strut_reader *reader, const char *what, strut_owner owner) {
+  return (strut_owner){
+      strut_scratch_text(reader, "the %s of %.150s", what, strut_owner_text(reader, owner)), NULL};
+}
+
 bool strut_hints_left(const strut_reader *reader) {
   return reader->suggestions < MOST_SUGGESTIONS && !strut_diagnostics_full(reader->diagnostics);
 }
@@ -180,11 +185,15 @@ static bool is_scalar(const strut_tree *value) {
   return value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
 }
 
-bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
-                       strut_owner owner, const char *expected) {
-  if (is_scalar(value)) return true;
+bool strut_refuse_value(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, const char *expected) {
   return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected,
                             key, strut_owner_text(reader, owner), strut_found(reader, value));
+}
+
+bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
+                       strut_owner owner, const char *expected) {
+  return is_scalar(value) || strut_refuse_value(reader, value, key, owner, expected);
 }
 
 /* The place in the file of an error within an expression; the whole value if quotes or escapes hide it. */

@@ -201,6 +201,8 @@ void strut_report_text(strut_reader *reader, strut_place place, const char *orig
                        const char *text);
 /** "member 'm1'", for use within a message; lives in scratch. */
 const char *strut_owner_text(strut_reader *reader, strut_owner owner);
+/** "the law of member 'm1'", as the subject of messages about what is within it; its text lives in scratch. */
+strut_owner strut_owner_within(strut_reader *reader, const char *what, strut_owner owner);
 /** Text from the file, shortened and without control characters; lives in scratch. */
 const char *strut_sanitised_text(strut_reader *reader, const char *text);
 /** What may be said of reader->limit_things where that is too little: "; 'limit_things' of ...", or "". */
@@ -232,6 +234,9 @@ const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_r
 bool strut_lacks_space(const strut_tree *value);
 /** The same of a text whose key would be `name`. */
 bool strut_lacks_space_after(const strut_tree *value, const char *name);
+/** Reports "expected EXPECTED for 'KEY' of OWNER, found VALUE"; returns false. */
+bool strut_refuse_value(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, const char *expected);
 /** Is it a scalar that is not null? If not, that is reported. */
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected);
@@ -297,6 +302,10 @@ const char *strut_keep_text(strut_reader *reader, const char *text);
 /** The first entry of a mapping of names to things (NULL: none), and the one after; enter its scope. */
 const strut_tree *strut_first_entry(strut_reader *reader, const strut_tree *map);
 const strut_tree *strut_following_entry(strut_reader *reader, const strut_tree *key);
+/** Each entry, as `key`. */
+#define STRUT_ENTRIES(reader, key, map)                                                            \
+  for (const strut_tree *(key) = strut_first_entry(reader, map); key;                              \
+       (key) = strut_following_entry(reader, key))
 /** Enters the scope of an entry; returns the one before. */
 strut_copy *strut_enter_scope(strut_reader *reader, const strut_tree *key);
 /** The index of what `text`, or the text parameter of that name, names in the scope of `value` (NULL: of the reader), or -1. */

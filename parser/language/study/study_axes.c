@@ -383,10 +383,8 @@ static void read_curve(strut_study_reader *reader, const strut_slot *slot) {
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     double *pair = study->goal.curve[study->goal.curve_count];
     if (item->kind != STRUT_TREE_LIST || item->count != 2) {
-      strut_report_error(reader->reader, item->place,
-                         "expected a displacement and a force such as [-1 mm, 2 N] for 'curve' of "
-                         "the study, found %s",
-                         strut_found(reader->reader, item));
+      strut_refuse_value(reader->reader, item, "curve", (strut_owner){"the study", NULL},
+                         "a displacement and a force such as [-1 mm, 2 N]");
       continue;
     }
     if (strut_read_number(reader->reader, item->first, "curve", curve_owner, STRUT_DIM_LENGTH,

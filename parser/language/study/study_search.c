@@ -204,11 +204,9 @@ static void read_goals(strut_study_reader *reader, const strut_tree *value,
   bool fine = first->kind == STRUT_TREE_SCALAR &&
               (!two || first->next->kind == STRUT_TREE_SCALAR) && !strut_is_null(first);
   if (!fine) {
-    strut_report_error(reader->reader, value->place,
-                       "expected a column, an expression of columns, or a list of two of them for "
-                       "'%s' of the search, found %s",
-                       search->maximise ? "maximise" : "minimise",
-                       strut_found(reader->reader, value));
+    strut_refuse_value(reader->reader, value, search->maximise ? "maximise" : "minimise",
+                       search_owner,
+                       "a column, an expression of columns, or a list of two of them");
     return;
   }
   keep_text(first, &search->goal);
@@ -384,10 +382,10 @@ static bool compile(binder *self, const char *text, size_t offset, strut_search_
   }
   strut_compiler compiler = {.column = find, .context = self, .program = program};
   if (!strut_expression_compile(text, &scope, &compiler, quantity, &error)) {
-    strut_diagnose(&self->file->diagnostics,
-                   place_of(formula->place, offset + error.offset, error.length),
-                   "in '%s' of the search: %s; 'keep' chooses the columns of the table",
-                   formula->text, error.message);
+    strut_diagnose(
+        &self->file->diagnostics, place_of(formula->place, offset + error.offset, error.length),
+        "in '%s' of the search: %s%s", formula->text, error.message,
+        strstr(error.message, "unknown") ? "; 'keep' chooses the columns of the table" : "");
     return false;
   }
   for (size_t i = 0; i < compiler.length; i++) kept[i] = program[i].instruction;
