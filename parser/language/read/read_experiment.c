@@ -13,15 +13,6 @@ enum { MOST_POSITIONS = 20000000 };
 
 static const strut_owner search_owner = {"the search for equilibria", NULL};
 
-/* The configuration that is being read, which is the last one. */
-static void take_position(strut_reader *reader, int32_t node, const double pair[2],
-                          const strut_tree *value) {
-  const strut_scene *scene = reader->scene;
-  (void)value;
-  memcpy(scene->configurations[scene->configuration_count - 1].position[node], pair,
-         2 * sizeof *pair);
-}
-
 /* One list of nodes; unknown ones are reported and left out. */
 static bool read_set(strut_reader *reader, const strut_tree *list, const char *key,
                      strut_owner owner, strut_node_set *set) {
@@ -102,6 +93,12 @@ static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner o
   return fine;
 }
 
+static bool read_shape(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                       strut_configuration *configuration) {
+  return strut_read_node_pairs(reader, map, owner, STRUT_DIM_LENGTH, configuration->position,
+                               sizeof *configuration->position);
+}
+
 /* `{contacts: ..., shape: ...}` */
 static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner owner,
                       strut_configuration *configuration) {
@@ -111,8 +108,7 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
   const strut_tree *shape = strut_given(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
   bool fine = strut_store(reader, &fields, configuration) && !fields.broken;
   configuration->shaped = shape != NULL;
-  return (!shape || strut_read_node_pairs(reader, shape, owner, STRUT_DIM_LENGTH, take_position)) &&
-         fine;
+  return (!shape || read_shape(reader, shape, owner, configuration)) && fine;
 }
 
 bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void *object) {
@@ -134,7 +130,7 @@ bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void 
     keys |= is_key(reader, tree);
   if (keys) return read_keys(reader, value, owner, configuration);
   configuration->shaped = true; /* `{}` is the drawn shape */
-  return strut_read_node_pairs(reader, value, owner, STRUT_DIM_LENGTH, take_position);
+  return read_shape(reader, value, owner, configuration);
 }
 
 void strut_read_configurations(strut_reader *reader) {
@@ -169,18 +165,6 @@ void strut_read_search(strut_reader *reader) {
 
 /* ---- the initial state; solver, run and output ---- */
 
-static void store_start(strut_reader *reader, int32_t node, const double pair[2],
-                        const strut_tree *value) {
-  (void)value;
-  memcpy(reader->scene->nodes[node].start, pair, 2 * sizeof *pair);
-}
-
-static void store_velocity(strut_reader *reader, int32_t node, const double pair[2],
-                           const strut_tree *value) {
-  memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
-  if (reader->velocity_source) reader->velocity_source[node] = value;
-}
-
 /* `settle` and `steady` are true, false or a mapping of their own, whose values are of `within`. */
 static void read_switch(strut_reader *reader, strut_fields *of, int key, const char *owner,
                         strut_owner within, strut_fields *fields) {
@@ -209,20 +193,18 @@ static void read_state(strut_reader *reader, int32_t configuration) {
   for (size_t i = 0; configuration >= 0 && i < scene->node_count; i++)
     memcpy(scene->nodes[i].start, scene->configurations[configuration].position[i],
            sizeof scene->nodes[i].start);
-  if (positions)
+  if (positions && scene->nodes)
     strut_read_node_pairs(reader, positions,
                           (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
-                          store_start);
+                          scene->nodes->start, sizeof *scene->nodes);
   if (velocity->state == STRUT_GIVEN)
     for (size_t i = 0; i < scene->node_count; i++)
       for (int c = 0; c < 2; c++)
         scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
-  if (!velocities) return;
-  reader->velocity_source =
-      strut_scratch_array(reader, scene->node_count, sizeof *reader->velocity_source);
+  if (!velocities || !scene->nodes) return;
   strut_read_node_pairs(reader, velocities,
                         (strut_owner){"'velocities' of the initial state", NULL},
-                        STRUT_DIM_VELOCITY, store_velocity);
+                        STRUT_DIM_VELOCITY, scene->nodes->velocity, sizeof *scene->nodes);
 }
 
 void strut_read_initial(strut_reader *reader) {

@@ -140,7 +140,7 @@ static bool is_named_twice(strut_reader *reader, const strut_tree *map, const st
 }
 
 bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
-                           strut_dimension dimension, strut_pair_taker *take) {
+                           strut_dimension dimension, void *pairs, size_t stride) {
   bool fine = true;
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
   for (const strut_tree *tree = map->first; tree; tree = tree->next->next) {
@@ -154,12 +154,10 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
     bool measured = length && tree->next->kind == STRUT_TREE_MAP;
     bool read = measured ? strut_read_data_point(reader, tree->next, owner, pair)
                          : strut_read_pair(reader, tree->next, tree->text, owner, dimension, pair);
-    if (!read || node < 0 || is_named_twice(reader, map, tree, node))
-      fine = false;
-    else if (take) {
-      if (length) strut_place_point(reader, tree->next, pair);
-      take(reader, node, pair, tree->next);
-    }
+    fine = read && node >= 0 && !is_named_twice(reader, map, tree, node) && fine;
+    if (!read || node < 0) continue;
+    if (length) strut_place_point(reader, tree->next, pair);
+    memcpy((char *)pairs + (size_t)node * stride, pair, sizeof pair);
   }
   return fine;
 }

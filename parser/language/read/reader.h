@@ -152,7 +152,6 @@ typedef struct strut_reader {
   strut_dimension *state_dimension;                                /* (states) */
   size_t pipe_drive_count;
   struct strut_pipe_drive *pipe_drives; /* actuators that pipes stand for */
-  const strut_tree **velocity_source;   /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
@@ -481,11 +480,9 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
 /** `[n1, n4]`, or a list of such lists, in the scene's memory. */
 bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                           strut_node_set **sets, size_t *count);
-/** Reads `{NODE: [x, y], ...}` and calls back for each node that could be read. */
-typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double pair[2],
-                              const strut_tree *value);
+/** Reads `{NODE: [x, y], ...}`: pairs of numbers of each node, `stride` bytes apart from `pairs` on. */
 bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
-                           strut_dimension dimension, strut_pair_taker *take);
+                           strut_dimension dimension, void *pairs, size_t stride);
 
 /* read_data.c: measured data */
 
