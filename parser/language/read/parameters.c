@@ -277,7 +277,7 @@ static void apply_setting(strut_reader *reader, const strut_setting *setting) {
   if (!parameters) {
     snprintf(message, sizeof message, "the scene has no parameter '%s'%s",
              strut_sanitised_text(reader, setting->name),
-             strut_hint(reader, setting->name, parameter_name, reader, reader->parameter_count));
+             strut_hint(reader, setting->name, parameter_name, reader));
     const strut_tree *key = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS)->key;
     report_setting(reader, setting, key ? key->place : strut_root_place(reader), message);
   } else if (parameters->set) {
@@ -458,8 +458,7 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
                               strut_owner_text(reader, owner), (unsigned)value->count,
                               STRUT_MOST_GROUPS);
   const strut_namespace names = {"group", &reader->group_names, strut_row_name,
-                                 STRUT_NAMED(reader->groups, reader->group_count),
-                                 reader->group_count};
+                                 STRUT_NAMED(reader->groups, reader->group_count)};
   for (; item && known; item = value == item ? NULL : item->next) {
     if (strut_read_name_of(reader, item, key, owner, &names) < 0)
       fine = false;

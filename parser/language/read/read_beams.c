@@ -265,8 +265,7 @@ static bool find_target(strut_reader *reader, const strut_beam *beam, int end,
     if (!reader->ends_unknown)
       strut_report_error(reader, value->place, "unknown member or beam '%s'%s",
                          strut_sanitised_text(reader, name),
-                         strut_hint(reader, name, target_name, reader,
-                                    reader->scene->member_count + reader->beam_count));
+                         strut_hint(reader, name, target_name, reader));
     return false;
   }
   target->end = ends[1] == beam->node[end];

@@ -248,11 +248,10 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
                             STRUT_KEY_SCENE_SIGNALS};
     for (int i = 0; i < 3; i++)
       if (strut_slot_of(&reader->top, sections[i])->state == STRUT_BROKEN) return -1;
-    size_t names = scene->actuator_count + scene->load_count + reader->named_count;
     strut_report_error(reader, value->place,
                        "unknown actuator, load or signal '%s' in 'of' of the run%s",
                        strut_sanitised_text(reader, value->text),
-                       strut_hint(reader, value->text, driver_name, reader, names));
+                       strut_hint(reader, value->text, driver_name, reader));
     return -1;
   }
   for (int32_t i = 1; i < count; i++)

@@ -162,10 +162,10 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
   while (words.count < 64 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
-  return strut_report_error(
-      reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
-      strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
-      strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found '%s'%s",
+                            expected, key->name, strut_owner_text(reader, owner),
+                            strut_sanitised_text(reader, value->text),
+                            strut_hint(reader, value->text, name_of_words, &words));
 }
 
 /* A list of words without repetition; bits gets one bit for each. */

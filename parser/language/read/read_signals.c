@@ -275,8 +275,7 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
   if (!strut_read_scalar(reader, value, key, owner, "a signal or the name of one")) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SIGNALS)->state == STRUT_BROKEN) return -1;
   const strut_namespace names = {"signal", &reader->signal_names, strut_row_name,
-                                 STRUT_NAMED(reader->named, reader->named_count),
-                                 reader->named_count};
+                                 STRUT_NAMED(reader->named, reader->named_count)};
   int32_t i = strut_read_name_of(reader, value, key, owner, &names);
   if (i < 0) return -1;
   int32_t index = read_named(reader, &reader->named[i]);

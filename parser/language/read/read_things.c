@@ -62,14 +62,14 @@ static const char *thing_name(const void *context, size_t i) {
 
 const char *strut_hint_of_things(strut_reader *reader, const char *word, strut_thing thing) {
   const things_context context = {reader->scene, thing};
-  return strut_hint(reader, word, thing_name, &context, strut_thing_count(reader->scene, thing));
+  return strut_hint(reader, word, thing_name, &context);
 }
 
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
                              strut_owner owner, strut_thing thing) {
   const things_context context = {reader->scene, thing};
   const strut_namespace names = {strut_thing_at(thing)->word, &reader->things[thing].names,
-                                 thing_name, &context, strut_thing_count(reader->scene, thing)};
+                                 thing_name, &context};
   if (strut_slot_of(&reader->top, kinds[thing].key)->state == STRUT_BROKEN) return -1;
   return strut_read_name_of(reader, value, key, owner, &names);
 }

@@ -123,16 +123,16 @@ bool strut_hints_left(const strut_reader *reader) {
 }
 
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
-                       const void *context, size_t count) {
+                       const void *context) {
   if (strlen(word) > LONGEST_NAME || !strut_hints_left(reader)) return "";
-  reader->suggestions += count;
+  for (size_t i = 0; i < MOST_SUGGESTIONS && names(context, i); i++) reader->suggestions++;
   const strut_near near = strut_near_to(word, names, context);
   return kept(reader, strut_arena_text(&reader->scratch, near.text, strlen(near.text)));
 }
 
 const char *strut_hint_of_rows(strut_reader *reader, const char *word,
                                const strut_named_rows *rows) {
-  return strut_hint(reader, word, strut_row_name, rows, rows->count);
+  return strut_hint(reader, word, strut_row_name, rows);
 }
 
 strut_place strut_root_place(const strut_reader *reader) {
@@ -358,21 +358,20 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
                                  const strut_namespace *namespace) {
   const local_names within = {reader, namespace};
   const char *word = value->text, *hint = strut_copy_hint(reader, value);
-  if (!*hint && reader->scope)
-    hint = strut_hint(reader, word, local_name, &within, namespace->count);
+  if (!*hint && reader->scope) hint = strut_hint(reader, word, local_name, &within);
   if (*hint) return hint;
   if (!strut_within_part(reader, value, namespace->map))
-    return strut_hint(reader, word, namespace->name, namespace->context, namespace->count);
+    return strut_hint(reader, word, namespace->name, namespace->context);
   return strut_name_map_find(namespace->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
 /* "; there is 'a', 'b'" where there are few. */
 static const char *list_of_names(strut_reader *reader, const strut_namespace *names) {
-  const char *text = names->count <= 14 ? "" : NULL;
-  for (size_t i = 0; text && i < names->count; i++)
-    text = strut_scratch_text(reader, "%s%s'%s'", text, i ? ", " : "; the names here are ",
-                              names->name(names->context, i));
-  return text ? text : "";
+  const char *text = "", *name;
+  if (names->name(names->context, 14)) return text;
+  for (size_t i = 0; (name = names->name(names->context, i)); i++)
+    text = strut_scratch_text(reader, "%s%s'%s'", text, i ? ", " : "; the names here are ", name);
+  return text;
 }
 
 /* The thing whose name is the text of the parameter that the value names, or -1, which was reported. */

@@ -206,9 +206,9 @@ strut_owner strut_owner_within(strut_reader *reader, const char *what, strut_own
 const char *strut_sanitised_text(strut_reader *reader, const char *text);
 /** What may be said of reader->limit_things where that is too little: "; 'limit_things' of ...", or "". */
 const char *strut_limit_hint(strut_reader *reader);
-/** "; did you mean 'x'?" or "": the nearest of `count` names; lives in scratch. */
+/** "; did you mean 'x'?" or "": the nearest of these names; lives in scratch. */
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
-                       const void *context, size_t count);
+                       const void *context);
 const char *strut_hint_of_rows(strut_reader *reader, const char *word,
                                const strut_named_rows *rows);
 /** True while suggestions may still be looked for: they are bounded for the file as a whole. */
@@ -265,7 +265,6 @@ typedef struct strut_namespace {
   const strut_name_map *map;
   strut_names *name; /* of number i, for suggestions */
   const void *context;
-  size_t count;
 } strut_namespace;
 
 /** The index of what the scalar names, or -1, which was reported. */

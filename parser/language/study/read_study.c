@@ -130,12 +130,11 @@ static void refuse_kept(strut_study_reader *reader, const strut_tree *item,
   kept_names names = {.quantities = run ? quantities : NULL};
   list_kept(study, &names, expected, sizeof expected);
   if (!strut_read_scalar(reader->reader, item, "keep", study_owner, expected)) return;
-  size_t count = names.word_count + (names.quantities ? names.quantities->count : 0);
   strut_report_error(reader->reader, item->place,
                      "expected %s%s for 'keep' of the study, found '%s'%s", expected,
                      run ? ", or a quantity that the model measures," : "",
                      strut_sanitised_text(reader->reader, item->text),
-                     strut_hint(reader->reader, item->text, kept_name, &names, count));
+                     strut_hint(reader->reader, item->text, kept_name, &names));
 }
 
 static bool is_twice(const strut_tree *list, const strut_tree *item) {
