@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Mappings by the table of keys: unknown keys, missing keys, typed values. See reader.h. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/language/read/reader.h"
 
 strut_slot *strut_slot_of(strut_fields *fields, int key) {
@@ -219,11 +221,24 @@ static bool read_version(strut_reader *reader, const strut_tree *value) {
                             strut_sanitised_text(reader, value->text));
 }
 
+/* A plain number above a whole turn, or 45 deg of a slope, is in radians, and probably meant in degrees. */
+static void note_radians(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                         double angle) {
+  const char *text = value->text;
+  double most = key == strut_key_at(STRUT_KEY_GROUND_SLOPE) ? STRUT_TAU / 8 : STRUT_TAU;
+  if (fabs(angle) > most && strut_number_scan(text, strlen(text)) == strlen(text))
+    strut_note(reader->diagnostics, value->place,
+               "a %s of %s is in radians, %.6g deg; write '%s deg' if that is meant", key->name,
+               text, angle * 360.0 / STRUT_TAU, text);
+}
+
 static bool read_number(strut_reader *reader, const strut_key *key, const strut_tree *value,
                         strut_owner owner, double *number) {
   if (key->measure == STRUT_MEASURE_CONTEXT) return true;
-  return strut_read_number(reader, value, key->name, owner, strut_measure_dimension(key->measure),
-                           key->limits, number);
+  bool fine = strut_read_number(reader, value, key->name, owner,
+                                strut_measure_dimension(key->measure), key->limits, number);
+  if (fine && key->measure == STRUT_MEASURE_ANGLE) note_radians(reader, key, value, *number);
+  return fine;
 }
 
 /* Reads a value whose type needs no code of the section's own; false if it was reported. */

@@ -486,23 +486,12 @@ static void check_belt(strut_reader *reader, const strut_slot *belt, const conta
                        "'belt_speed' has no meaning without 'friction' of a contact");
 }
 
-/* A plain number above 45 deg is in radians, and probably meant in degrees. */
-static void note_steep(strut_reader *reader, const strut_slot *slope) {
-  if (slope->state != STRUT_GIVEN || !(fabs(slope->number[0]) > STRUT_TAU / 8)) return;
-  const char *text = slope->value->text;
-  if (strut_number_scan(text, strlen(text)) == strlen(text))
-    strut_note(reader->diagnostics, slope->value->place,
-               "a slope of %s is in radians, %.6g deg; write '%s deg' if that is meant", text,
-               slope->number[0] * 360.0 / STRUT_TAU, text);
-}
-
 static void read_one(strut_reader *reader, strut_fields *fields, strut_place place,
                      strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, place);
   strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
   if (!strut_store(reader, fields, &section) || !read_normal(reader, fields, &section))
     fields->broken = true;
-  note_steep(reader, strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE));
   *ground = section.ground;
   bool line = ground->shape == STRUT_GROUND_LINE;
   ground_defaults defaults = {
