@@ -233,7 +233,7 @@
   X(SAMPLE, COUNT, "count", NUMBER, NONE, WHOLE(1, 1000000), "", REQUIRED, 0, "", FIELD(strut_sample_keys, count), "Number of points.") \
   X(SAMPLE, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_sample_keys, seed), "Seed of the points; the same seed gives the same points.") \
   X(SAMPLE, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_sample_keys, scheme), "`sobol`: Sobol's sequence, shifted by the seed; `lhs`: Latin hypercube; `random`: independent points.") \
-  X(SAMPLE, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 40, and their distributions.") \
+  X(SAMPLE, OVER, "over", THINGS, NONE, COUNT(1, STRUT_SAMPLE_MOST_NUMBERS), "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters and their distributions.") \
   X(SAMPLE, CORRELATION, "correlation", FREE, NONE, ANY, "", OPTIONAL, 0, "a list of rows of numbers", NONE, "Correlation of the parameters, in their order, such as `[[1, 0.5], [0.5, 1]]`: that of the normal numbers behind their distributions. Without it they are independent.")
 
 #define STRUT_DISTRIBUTION_KEYS(X) \
@@ -255,7 +255,7 @@
 
 #define STRUT_SENSITIVITY_KEYS(X) \
   X(SENSITIVITY, OF, "of", NAMES, NONE, ANY, "", REQUIRED, 0, "a column of the table", LIST(strut_study_sensitivity, of, of_count), "Columns of the table: numbers, or texts such as `outcome`.") \
-  X(SENSITIVITY, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 20, and their distributions.") \
+  X(SENSITIVITY, OVER, "over", THINGS, NONE, COUNT(1, STRUT_SENSITIVITY_MOST), "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters and their distributions.") \
   X(SENSITIVITY, SAMPLES, "samples", NUMBER, NONE, WHOLE(0, 100000), "256", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, samples), "Base samples of Saltelli's design; n parameters need n + 2 points each. 0: derivatives only.") \
   X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, seed), "Seed of the points; the same seed gives the same points.") \
   X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_study_sensitivity, scheme), "As of a [sample](#sample).") \
@@ -282,12 +282,12 @@
 #define STRUT_SEARCH_KEYS(X) \
   X(SEARCH, MAXIMISE, "maximise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "The goal to maximise: a column of the table, or an expression of columns such as `velocity/frequency`. With two, `[velocity, -cost_of_transport]`, the search finds the points that no other beats in both.") \
   X(SEARCH, MINIMISE, "minimise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "The goal to minimise, likewise: `abs(velocity - 10 mm/s)`.") \
-  X(SEARCH, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable), or a list of choices", THINGS(VARIABLE), "The parameters to find.") \
+  X(SEARCH, OVER, "over", THINGS, NONE, COUNT(1, STRUT_SEARCH_MOST_VARIABLES), "", REQUIRED, 0, "the keys of a [variable](#variable), or a list of choices", THINGS(VARIABLE), "The parameters to find.") \
   X(SEARCH, METHOD, "method", WORD, NONE, ANY, "multistart", OPTIONAL, 0, "multistart|crs2|direct|isres|cobyla|bobyqa|sbplx|neldermead|cma|nsga2|bfgs", FIELD(strut_study_search, method), "Global: `multistart` (even points, then `sbplx` from the best two that lie apart), `crs2` (controlled random search, then `sbplx`), `direct` (dividing rectangles, no seed), `isres` (evolution), `cma` (CMA-ES). Local, from a start: `cobyla`, `bobyqa`, `sbplx`, `neldermead`. Two goals always use `nsga2`. `bfgs` follows the derivatives of the goal by the variables from a start, and ends where they vanish; see [searches](search.md#what-can-be-asked-for).") \
   X(SEARCH, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 100000), "200", OPTIONAL, 0, "", FIELD(strut_study_search, evaluations), "Number of different points that each search may compute.") \
   X(SEARCH, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, starts), "Number of searches side by side. The first begins at `start`, the others elsewhere.") \
   X(SEARCH, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294960000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, seed), "Seed of the first search; the next search has the next seed. The same seed gives the same points.") \
-  X(SEARCH, SUBJECT_TO, "subject_to", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Conditions on the best point, such as `work < 2 mJ` or `outcome = I`: `<`, `<=`, `>`, `>=` between expressions of columns, `=` and `!=` between a column of texts and a word.") \
+  X(SEARCH, SUBJECT_TO, "subject_to", NAMES, NONE, COUNT(0, STRUT_SEARCH_MOST_CONDITIONS), "", OPTIONAL, 0, "", BY_HAND, "Conditions on the best point, such as `work < 2 mJ` or `outcome = I`: `<`, `<=`, `>`, `>=` between expressions of columns, `=` and `!=` between a column of texts and a word.") \
   X(SEARCH, WORST_OVER, "worst_over", THINGS, NONE, ANY, "", OPTIONAL, 0, "a list of values, or the keys of a [range](#range)", BY_HAND, "Scenarios: each evaluation computes all combinations of these values, of which the worst counts. `subject_to` must hold in all.")
 
 #define STRUT_VARIABLE_KEYS(X) \
@@ -299,8 +299,8 @@
   X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: whole numbers only, in the SI unit.")
 
 #define STRUT_FIT_KEYS(X) \
-  X(FIT, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable)", THINGS(VARIABLE), "The parameters to find, up to 20, by their ranges; the first start is at `start`.") \
-  X(FIT, MATCH, "match", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [match](#match), and what is compared", THINGS(MATCH), "Sets of measured numbers, up to 10, all of which count together.") \
+  X(FIT, OVER, "over", THINGS, NONE, COUNT(1, STRUT_FIT_MOST_VARIABLES), "", REQUIRED, 0, "the keys of a [variable](#variable)", THINGS(VARIABLE), "The parameters to find, by their ranges; the first start is at `start`.") \
+  X(FIT, MATCH, "match", THINGS, NONE, COUNT(1, STRUT_FIT_MOST_MATCHES), "", REQUIRED, 0, "the keys of a [match](#match), and what is compared", THINGS(MATCH), "Sets of measured numbers, all of which count together.") \
   X(FIT, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "8", OPTIONAL, 0, "", FIELD(strut_study_fit, starts), "Number of fits from different starts; all but the first begin anywhere in the ranges.") \
   X(FIT, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_fit, seed), "Seed of the starts; the same seed gives the same starts.")
 
@@ -322,8 +322,8 @@
   X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", LATER(FIELD(strut_study_follow, over)), "The parameter that varies.") \
   X(FOLLOW, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, from), "Lower end of its range.") \
   X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, to), "Upper end of its range.") \
-  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", LIST(strut_study_follow, at, at_count), "Values at which runs find the first motions.") \
-  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "a configuration", LIST(strut_study_follow, start_from, start_count), "Configurations in whose equilibria these runs start.") \
+  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, COUNT(1, STRUT_STUDY_FOLLOW_MOST_AT), "the model's own value, or the middle", OPTIONAL, 0, "", LIST(strut_study_follow, at, at_count), "Values at which runs find the first motions.") \
+  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, COUNT(1, STRUT_STUDY_FOLLOW_MOST_FROM), "as the model says", OPTIONAL, 0, "a configuration", LIST(strut_study_follow, start_from, start_count), "Configurations in whose equilibria these runs start.") \
   X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, SHARE(STRUT_FOLLOW_MOST_ACCURACY), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities.") \
   X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "Integration method; it must locate events if there are contacts or cables.") \
   X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch in each direction.") \

@@ -245,6 +245,9 @@ static bool read_number(strut_reader *reader, const strut_key *key, const strut_
 static bool read_typed(strut_reader *reader, const strut_key *key, const strut_tree *value,
                        strut_owner owner, strut_slot *slot) {
   strut_key_type type = key->type;
+  if (key->limits.range == STRUT_RANGE_COUNT &&
+      !strut_check_limits(reader, value, key->name, owner, key->limits, value->count))
+    return false;
   if (type == STRUT_TYPE_VERSION) return read_version(reader, value);
   if (type == STRUT_TYPE_NUMBER && key->section == STRUT_SECTION_SCENE) return true; /* as pairs */
   if (type == STRUT_TYPE_NUMBER) return read_number(reader, key, value, owner, slot->number);

@@ -457,11 +457,6 @@ static void read_values(strut_study_reader *reader, strut_fields *fields, strut_
     fine = strut_report_error(reader->reader, to->value->place,
                               "'to' of what is followed must be above 'from'");
   if (!fine || at->state != STRUT_GIVEN) return;
-  if (!at->value->count || at->value->count > STRUT_STUDY_FOLLOW_MOST_AT) {
-    strut_report_error(reader->reader, at->value->place, "'at' may have 1 to %d values, found %zu",
-                       STRUT_STUDY_FOLLOW_MOST_AT, (size_t)at->value->count);
-    return;
-  }
   double *values = strut_study_allocate(reader, at->value->count, sizeof *values);
   follow->at = values;
   for (const strut_tree *item = at->value->first; item && values; item = item->next) {
@@ -507,12 +502,6 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   if (!follow) return;
   strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,
                     follow);
-  const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_FOLLOW_START_FROM);
-  if (starts->state == STRUT_GIVEN &&
-      (!starts->value->count || starts->value->count > STRUT_STUDY_FOLLOW_MOST_FROM))
-    strut_report_error(reader->reader, starts->value->place,
-                       "'start_from' may have 1 to %d configurations, found %zu",
-                       STRUT_STUDY_FOLLOW_MOST_FROM, (size_t)starts->value->count);
   read_over(reader, &fields, follow);
   study->follow = follow;
 }

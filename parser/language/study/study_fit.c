@@ -26,8 +26,8 @@ typedef struct reading {
 /* ---- parameters ---- */
 
 static void read_over(strut_study_reader *reader, const strut_slot *over, strut_study_fit *fit) {
-  strut_study_read_variables(reader, over, "the fit", STRUT_FIT_MOST_VARIABLES, &fit->variables,
-                             &fit->variable_count, &fit->column);
+  strut_study_read_variables(reader, over, "the fit", &fit->variables, &fit->variable_count,
+                             &fit->column);
   for (size_t i = 0; i < fit->variable_count; i++) {
     const strut_search_variable *variable = &fit->variables[i];
     if (variable->choice_count || variable->wraps || variable->integer)
@@ -452,11 +452,6 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *matches = strut_slot_of(&fields, STRUT_KEY_FIT_MATCH);
   if (over->state != STRUT_GIVEN || matches->state != STRUT_GIVEN) return;
   size_t count = matches->value->count;
-  if (!count || count > STRUT_FIT_MOST_MATCHES) {
-    strut_report_error(reader->reader, matches->value->place,
-                       "a fit has 1 to %d matches, found %zu", STRUT_FIT_MOST_MATCHES, count);
-    return;
-  }
   fit->matches = strut_study_allocate(reader, count, sizeof *fit->matches);
   if (!fit->matches) return;
   const strut_tree *sets[STRUT_FIT_MOST_MATCHES];

@@ -339,15 +339,10 @@ static void make_values(strut_study_reader *reader, const strut_sample_keys *key
     reader->reader->out_of_memory = true;
 }
 
-/* Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
+/* Reads parameters and their distributions into columns of the axis; false: reported. */
 static bool read_distributions(strut_study_reader *reader, const strut_tree *over,
-                               strut_owner owner, size_t most, strut_study_axis *axis,
-                               strut_distribution *distributions) {
+                               strut_study_axis *axis, strut_distribution *distributions) {
   bool fine = true;
-  if (over->count == 0 || over->count > most)
-    return strut_report_error(reader->reader, over->place,
-                              "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
-                              strut_owner_text(reader->reader, owner), (size_t)over->count);
   axis->columns = strut_study_allocate(reader, over->count, sizeof *axis->columns);
   if (!axis->columns) return false;
   for (const strut_tree *key = over->first; key; key = key->next->next) {
@@ -366,8 +361,7 @@ void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
   if (over->state != STRUT_GIVEN) return;
   axis->count = keys.count;
-  bool fine = read_distributions(reader, over->value, sample_owner, STRUT_SAMPLE_MOST_NUMBERS, axis,
-                                 distributions);
+  bool fine = read_distributions(reader, over->value, axis, distributions);
   double *factor = NULL;
   fine = fine && read_factor(reader, strut_slot_of(&fields, STRUT_KEY_SAMPLE_CORRELATION),
                              axis->column_count, &factor);
@@ -429,8 +423,7 @@ void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top)
                        "the sensitivity analysis has neither samples nor derivatives");
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
-  bool fine = read_distributions(reader, over->value, sensitivity_owner, STRUT_SENSITIVITY_MOST,
-                                 axis, distributions);
+  bool fine = read_distributions(reader, over->value, axis, distributions);
   sensitivity->axis = study->axis_count++;
   sensitivity->wanted = true;
   if (fine && !fields.broken && !reader->reader->failed)

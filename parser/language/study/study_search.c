@@ -119,15 +119,10 @@ static bool read_variable(strut_study_reader *reader, strut_study_axis *axis,
 }
 
 void strut_study_read_variables(strut_study_reader *reader, const strut_slot *over, const char *of,
-                                size_t most, strut_search_variable **variables,
-                                size_t *variable_count, size_t *column) {
+                                strut_search_variable **variables, size_t *variable_count,
+                                size_t *column) {
   strut_study *study = &reader->file->study;
   size_t count = over->value->count;
-  if (count == 0 || count > most) {
-    strut_report_error(reader->reader, over->value->place,
-                       "%s is 'over' 1 to %zu parameters, found %zu", of, most, count);
-    return;
-  }
   strut_study_axis *axis = &study->axes[study->axis_count++];
   *axis = (strut_study_axis){.count = 1};
   axis->columns = strut_study_allocate(reader, count, sizeof *axis->columns);
@@ -232,10 +227,6 @@ static void read_goal(strut_study_reader *reader, strut_fields *fields,
 static void read_conditions(strut_study_reader *reader, const strut_slot *slot,
                             strut_study_search *search) {
   if (slot->state != STRUT_GIVEN) return;
-  if (slot->value->count > STRUT_SEARCH_MOST_CONDITIONS)
-    strut_report_error(reader->reader, slot->value->place,
-                       "'subject_to' may have %d conditions, found %zu",
-                       STRUT_SEARCH_MOST_CONDITIONS, (size_t)slot->value->count);
   search->conditions =
       strut_study_allocate(reader, slot->value->count + 1, sizeof *search->conditions);
   for (const strut_tree *item = slot->value->first; item && search->conditions; item = item->next) {
@@ -304,8 +295,8 @@ void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot)
   strut_study_axis *evaluations = &study->axes[study->axis_count++];
   add_evaluations(reader, search, evaluations, over->value->count);
   read_scenarios(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
-  strut_study_read_variables(reader, over, "the search", STRUT_SEARCH_MOST_VARIABLES,
-                             &search->variables, &search->variable_count, &search->column);
+  strut_study_read_variables(reader, over, "the search", &search->variables,
+                             &search->variable_count, &search->column);
   if (search->method == STRUT_SEARCH_BFGS) choose_derivatives(reader, &fields, search);
   study->search = search;
 }

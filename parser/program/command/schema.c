@@ -297,20 +297,24 @@ static void put_value(schema *self, const strut_key *key) {
   }
 }
 
-/* The range of numbers; that of expressions is not known here. */
+/* The range of numbers, that of expressions is not known here; or how many entries there may be. */
 static void put_limits(schema *self, const strut_key *key) {
-  if (key->type != STRUT_TYPE_NUMBER) return;
+  bool count = key->limits.range == STRUT_RANGE_COUNT, list = *strut_type_shape(key->type) == '[';
+  const char *least = !count ? "minimum" : list ? "minItems" : "minProperties";
+  const char *most = !count ? "maximum" : list ? "maxItems" : "maxProperties";
+  if (!count && key->type != STRUT_TYPE_NUMBER) return;
   switch (key->limits.range) {
     case STRUT_RANGE_ANY: break;
     case STRUT_RANGE_NOT_NEGATIVE: put_member(self, "minimum", "0"); break;
     case STRUT_RANGE_SHARE:
     case STRUT_RANGE_ABOVE_ZERO: put_member(self, "exclusiveMinimum", "0"); break;
+    case STRUT_RANGE_COUNT:
     case STRUT_RANGE_WHOLE:
-      strut_json_number(&self->json, self->open[self->depth], "minimum", key->limits.least);
+      strut_json_number(&self->json, self->open[self->depth], least, key->limits.least);
       break;
   }
   if (key->limits.most > 0.0)
-    strut_json_number(&self->json, self->open[self->depth], "maximum", key->limits.most);
+    strut_json_number(&self->json, self->open[self->depth], most, key->limits.most);
 }
 
 /* A default that is a value; the others are in the description. */
