@@ -124,9 +124,10 @@ const char *strut_limits_fault(strut_key_limits limits, double number,
   else if (share && number > limits.most)
     snprintf(text, STRUT_LIMITS_TEXT, "must be at most %g %%, found %g %%; 1 %% is 0.01",
              100.0 * limits.most, 100.0 * number);
-  else if (whole && !inside)
-    snprintf(text, STRUT_LIMITS_TEXT, "must be a whole number %s %.0f, found %.15g", from,
-             limits.most, number);
+  else if ((whole || range == STRUT_RANGE_COUNT) && !inside)
+    snprintf(text, STRUT_LIMITS_TEXT, "must %s %s %.0f%s, found %.15g",
+             whole ? "be a whole number" : "have", from, limits.most, whole ? "" : " entries",
+             number);
   else
     return NULL;
   return text;

@@ -59,12 +59,13 @@ typedef enum strut_key_range {
   STRUT_RANGE_NOT_NEGATIVE,
   STRUT_RANGE_ABOVE_ZERO,
   STRUT_RANGE_WHOLE, /* a whole number from least to most */
+  STRUT_RANGE_COUNT, /* of a list or a mapping: so many entries */
   STRUT_RANGE_SHARE  /* above zero, up to most; messages give both in percent */
 } strut_key_range;
 
 typedef struct strut_key_limits {
   strut_key_range range;
-  double least, most; /* of WHOLE and SHARE */
+  double least, most; /* of WHOLE, COUNT and SHARE */
 } strut_key_limits;
 
 #define STRUT_LIMITS_ANY                                                                           \
@@ -75,6 +76,8 @@ typedef struct strut_key_limits {
   { STRUT_RANGE_ABOVE_ZERO, 0.0, 0.0 }
 #define STRUT_LIMITS_WHOLE(least, most)                                                            \
   { STRUT_RANGE_WHOLE, least, most }
+#define STRUT_LIMITS_COUNT(least, most)                                                            \
+  { STRUT_RANGE_COUNT, least, most }
 #define STRUT_LIMITS_SHARE(most)                                                                   \
   { STRUT_RANGE_SHARE, 0.0, most }
 /** The same as values: STRUT_WITHIN(ANY), STRUT_WITHIN(WHOLE(1, 9)). */

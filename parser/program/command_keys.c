@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What comes with the program: the language as a page and as a schema (`strut keys`), models (`strut examples`); `strut export`. */
+#include <errno.h>
 #include <glob.h>
 #include <stdio.h>
 #include <string.h>
@@ -213,10 +214,16 @@ static strut_status print_model(const char *path, size_t root, strut_error *erro
   return STRUT_OK;
 }
 
-/* A file that exists stays as it is. */
+/* A file that exists stays as it is, even one that another process is just writing. */
 static strut_status create_file(const char *path, const char *text, strut_error *error) {
-  if (access(path, F_OK) != 0) return strut_file_write_path(path, text, error);
-  return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' exists already, and is left as it is", path);
+  FILE *file = fopen(path, "wxe");
+  if (!file && errno == EEXIST)
+    return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' exists already, and is left as it is", path);
+  bool whole = file && fputs(text, file) >= 0;
+  if (file && fclose(file) == 0 && whole) return STRUT_OK;
+  strut_status status = strut_file_fail(error, "write", path, errno);
+  if (file) remove(path);
+  return status;
 }
 
 /* Copies a model, and those that it names: the model of a study, the base of a scene. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of commands, a new one being a file and a line here and in the header; and the command line. */
+/* Commands by name, and the command line. */
 #include "parser/program/commands.h"
 
 #include <stdio.h>
@@ -14,7 +14,7 @@
 
 static strut_status print_help(const strut_arguments *arguments);
 
-static const strut_command help_command = {
+const strut_command strut_command_help = {
     .name = "help",
     .model = "COMMAND|KEY",
     .model_optional = true,
@@ -22,28 +22,12 @@ static const strut_command help_command = {
     .run = print_help,
 };
 
-/* In the order of the help; each begins with the group that it belongs to. */
 static const struct {
   const char *group;
   const strut_command *command;
 } rows[] = {
-    {"Simulate", &strut_command_run},
-    {"Simulate", &strut_command_sweep},
-    {"Simulate", &strut_command_compare},
-    {"Simulate", &strut_command_tradeoff},
-    {"Analyse equilibria", &strut_command_equilibria},
-    {"Analyse equilibria", &strut_command_path},
-    {"Analyse equilibria", &strut_command_modes},
-    {"Analyse equilibria", &strut_command_rigidity},
-    {"Analyse equilibria", &strut_command_form},
-    {"Inspect, draw and convert", &strut_command_check},
-    {"Inspect, draw and convert", &strut_command_view},
-    {"Inspect, draw and convert", &strut_command_plot},
-    {"Inspect, draw and convert", &strut_command_export},
-    {"Learn", &strut_command_examples},
-    {"Learn", &strut_command_keys},
-    {"Learn", &help_command},
-};
+#define COMMAND_ROW(name, group) {group, &strut_command_##name},
+    STRUT_COMMAND_TABLE(COMMAND_ROW)};
 enum { COMMANDS = sizeof rows / sizeof rows[0] };
 
 /* The i-th command, or NULL after the last. */
@@ -112,7 +96,7 @@ static strut_status print_help(const strut_arguments *arguments) {
   if (arguments->model && !command)
     return strut_command_find(arguments->model) ? STRUT_OK : STRUT_USAGE;
   if (command)
-    strut_command_help(command);
+    strut_command_explain(command);
   else
     print_program_help();
   return STRUT_OK;
@@ -378,7 +362,7 @@ static void print_option(const strut_option *option) {
   printf("  %-*s %s\n", COLUMN, left, option->help);
 }
 
-void strut_command_help(const strut_command *command) {
+void strut_command_explain(const strut_command *command) {
   printf("Usage: strut %s [OPTION]...", command->name);
   if (command->model) printf(command->model_optional ? " [%s]" : " %s", command->model);
   if (command->model_optional && command->many) printf("...");

@@ -10,27 +10,28 @@
 #include "engine/scene/value_rows.h"
 #include "parser/program/command/scene_options.h"
 
-extern const strut_command strut_command_check;
-extern const strut_command strut_command_compare;
-extern const strut_command strut_command_equilibria;
-extern const strut_command strut_command_examples;
-extern const strut_command strut_command_export;
-extern const strut_command strut_command_form;
-extern const strut_command strut_command_keys;
-extern const strut_command strut_command_modes;
-extern const strut_command strut_command_path;
-extern const strut_command strut_command_plot;
-extern const strut_command strut_command_rigidity;
-extern const strut_command strut_command_run;
-extern const strut_command strut_command_sweep;
-extern const strut_command strut_command_tradeoff;
-extern const strut_command strut_command_view;
-
+/** Commands in the order of the help: a new one is a row here and a file. */
+#define STRUT_COMMAND_TABLE(COMMAND)                                                               \
+  COMMAND(run, "Simulate")                                                                         \
+  COMMAND(sweep, "Simulate")                                                                       \
+  COMMAND(compare, "Simulate")                                                                     \
+  COMMAND(tradeoff, "Simulate")                                                                    \
+  COMMAND(equilibria, "Analyse equilibria")                                                        \
+  COMMAND(path, "Analyse equilibria")                                                              \
+  COMMAND(modes, "Analyse equilibria")                                                             \
+  COMMAND(rigidity, "Analyse equilibria")                                                          \
+  COMMAND(form, "Analyse equilibria")                                                              \
+  COMMAND(check, "Inspect, draw and convert")                                                      \
+  COMMAND(view, "Inspect, draw and convert")                                                       \
+  COMMAND(plot, "Inspect, draw and convert")                                                       \
+  COMMAND(export, "Inspect, draw and convert")                                                     \
+  COMMAND(examples, "Learn")                                                                       \
+  COMMAND(keys, "Learn")                                                                           \
+  COMMAND(help, "Learn")
+#define STRUT_COMMAND_DECLARED(name, group) extern const strut_command strut_command_##name;
+STRUT_COMMAND_TABLE(STRUT_COMMAND_DECLARED)
 /* Forms of commands. */
-
-extern const strut_command strut_command_merge;
-extern const strut_command strut_command_periodic;
-extern const strut_command strut_command_schema;
+extern const strut_command strut_command_merge, strut_command_periodic, strut_command_schema;
 
 /** The command of that name, or NULL. */
 const strut_command *strut_command_named(const char *name);
@@ -79,7 +80,7 @@ const strut_command *strut_command_variant_of(const strut_command *command, int 
                                               char **words);
 
 /** Prints the help of a command on stdout. */
-void strut_command_help(const strut_command *command);
+void strut_command_explain(const strut_command *command);
 
 /* Rows that tables of several commands have. */
 

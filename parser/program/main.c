@@ -42,13 +42,13 @@ static strut_status run_command(const strut_command *command, int argc, char **a
   const double begin = strut_run_clock();
   command = strut_command_variant_of(command, argc - 1, argv + 1);
   if (asks_for_help(argc, argv)) {
-    strut_command_help(command);
+    strut_command_explain(command);
     return STRUT_OK;
   }
   strut_status status = strut_arguments_read(command, argc, argv, &arguments);
   if (status == STRUT_OK) limit_threads(&arguments.threads);
   if (status == STRUT_OK && arguments.help) {
-    strut_command_help(command);
+    strut_command_explain(command);
   } else if (status == STRUT_OK) {
     status = command->run ? command->run(&arguments) : strut_analysis_run(&arguments);
     /* Below a table; never in JSON or a file, which must not change from run to run. */

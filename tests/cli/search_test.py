@@ -190,8 +190,8 @@ def refuse(body, *texts, words=()):
         check(text in said, f"expected '{text}' for {body}, found {said}")
 
 
-refuse("search: {minimise: frequence_1, " + OVER + "}\n", "refused.yaml:6:20: ", "frequence_1",
-       "frequency_1", "'keep' chooses")
+refuse("search: {minimise: frequence_1, " + OVER + "}\n", "refused.yaml:6:20: ", "frequency_1", "'keep' chooses")
+refuse("search: {minimise: frequency_1*m, " + OVER + "}\n", "the unit 'm' needs a number before it, such as '1 m'\n")
 refuse("search: {minimise: at, " + OVER + "}\n", "refused.yaml:6:20: ", "holds texts")
 refuse("search: {minimise: 2 Hz, " + OVER + "}\n", "refused.yaml:6:20: ", "names no column")
 refuse("search: {minimise: frequency_1 + 1 kg, " + OVER + "}\n", "refused.yaml:6:")

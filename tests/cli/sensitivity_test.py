@@ -228,7 +228,7 @@ keep: [frequencies]
             ("sensitivity: {of: [frequency_1]}\n", "lacks 'over'"),
             ("sensitivity: {of: [], over: {stiff: {uniform: [1 N/m, 2 N/m]}}}\n",
              "expected columns of the table for 'of'"),
-            ("sensitivity: {of: [frequency_1], over: {}}\n", "expected 1 to 20 parameters"),
+            ("sensitivity: {of: [frequency_1], over: {}}\n", "must have from 1 to 20 entries"),
             ("sensitivity: {of: [frequency_1], over: {stif: {uniform: [1 N/m, 2 N/m]}}}\n",
              "no parameter 'stif'; did you mean 'stiff'"),
             ("sensitivity: {of: [frequency_1], over: {stiff: {uniform: [2 N/m, 1 N/m]}}}\n", "two ascending numbers"),

@@ -126,6 +126,7 @@ shows 0 ' not known: fixed steps of rk4 pass over changes between sticking and s
 grep -q '^  accuracy  *not known: fixed steps' out || fail "the remark has no label 'accuracy'"
 finds '.method == "rk4-events"' run slide.yaml --friction-law coulomb
 edit 's/^ground: {/&slope: 1, /' slide.yaml tells 0 "note: a slope of 1 is in radians, 57.2958 deg; write '1 deg'" check
+edit 's/frequency: 3/&, phase: 90/' scale.yaml tells 0 "note: a phase of 90 is in radians, 5156.62 deg; write '90 deg'" check
 for method in "--integrator rk4-events" "--accuracy 1%"; do
   shows 0 '"caveat":	null' run slide.yaml --json $method
 done

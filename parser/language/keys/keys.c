@@ -181,12 +181,13 @@ enum {
 static const struct type_row {
   unsigned shapes;
   uint32_t least, most;
-  const char *expected, *reference;
+  const char *schema, *expected, *reference;
 } types[] = {
-#define TYPE_ROW(TYPE, shapes, least, most, expected, reference)                                   \
-  {STRUT_SHAPE_##shapes, least, most, expected, reference},
+#define TYPE_ROW(TYPE, shapes, least, most, schema, expected, reference)                           \
+  {STRUT_SHAPE_##shapes, least, most, schema, expected, reference},
     STRUT_KEY_TYPES(TYPE_ROW)};
 
+const char *strut_type_shape(strut_key_type type) { return types[type].schema; }
 const char *strut_type_reference(strut_key_type type) { return types[type].reference; }
 
 bool strut_shape_fits(strut_key_type type, const strut_tree *value) {

@@ -24,43 +24,44 @@ typedef enum strut_section {
 
 /* clang-format off */
 /**
- * The types of values, X(TYPE, shape, least, most, what messages expect, what the reference says): whether the value is a scalar or the name of
- * one (SCALAR), a list with so many items (LIST), a mapping (MAP), or one of several; ANY where its reader reports it.
+ * The types of values, X(TYPE, shape, least, most, schema, what messages expect, what the reference says): whether the value is a scalar or the name of
+ * one (SCALAR), a list with so many items (LIST), a mapping (MAP), or one of several; ANY where its reader reports it. The schema says that in
+ * the words of parser/program/command/schema.c.
  * What messages expect is NULL where it depends on the key (keys.c).
  */
 #define STRUT_KEY_TYPES(X) \
-  X(VERSION, SCALAR, 0, 0, "the language version 1", "") \
-  X(TEXT, SCALAR, 0, 0, "a text", "text") \
-  X(NUMBER, ANY, 0, 0, NULL, "number") /* an expression of the key's dimension */ \
-  X(PAIR, ANY, 0, 0, NULL, "two numbers") /* a list of two such numbers */ \
-  X(WORD, ANY, 0, 0, NULL, "") /* one of the key's words */ \
-  X(WORDS, LIST, 0, UINT32_MAX, NULL, "list of ") \
-  X(FIXED, SCALAR | STRUT_SHAPE_LIST, 0, UINT32_MAX, NULL, "") /* one of the words, or a list of x and y */ \
-  X(NAME, SCALAR, 0, 0, "a name", "name") \
-  X(NODE_PATH, LIST, 2, UINT32_MAX, "two nodes such as [n1, n2], or the nodes of a running cable", "names of two nodes or more") \
-  X(NODE_TRIPLE, LIST, 3, 3, "three nodes such as [n1, n2, n3]", "names of three nodes") \
-  X(NUMBERS, LIST, 0, UINT32_MAX, "a list of numbers", "list of numbers") \
-  X(POINTS, LIST, 0, UINT32_MAX, "a list of points such as [[0, 0], [2 mm, 3 N]]", "list of `[x, force]`") \
-  X(PROFILE, LIST, 0, UINT32_MAX, "a list of points such as [[0, 0], [10 mm, 0], [20 mm, 5 mm]]", "list of `[x, y]` [m]") \
-  X(LAW, SCALAR | STRUT_SHAPE_MAP, 0, 0, "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}", "[law](#law), or the kind of one") \
-  X(CONTACT_NODES, ALL | STRUT_SHAPE_LIST, 0, UINT32_MAX, "all, or a list of nodes such as [n1, n2]", "`all`, or list of nodes") \
-  X(NODE_SETS, LIST, 0, UINT32_MAX, "nodes such as [n1, n2], or a list of such lists", "list of nodes, or list of such lists") \
-  X(GROUPS, SCALAR | STRUT_SHAPE_LIST, 0, UINT32_MAX, "a group, or a list of groups", "group, or list of groups") \
-  X(SIGNAL, SCALAR | STRUT_SHAPE_MAP, 0, 0, "a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name", "[signal](#signal), or the name of one") \
-  X(SIGNALS, LIST, 0, UINT32_MAX, "a list of signals", "list of signals") \
-  X(TABLE, LIST, 0, UINT32_MAX, "a list of points such as [[0 s, 0], [1 s, 2]]", "list of `[t, value]`") \
-  X(SETTLE, SCALAR | STRUT_SHAPE_MAP, 0, 0, "true, or a mapping such as {limit: 100 s}", "`true`, `false`, or [mapping](#settle)") \
-  X(STEADY, SCALAR | STRUT_SHAPE_MAP, 0, 0, "true, or a mapping such as {tolerance: 0.5 %}", "`true`, `false`, or [mapping](#steady)") \
-  X(EXPRESSION, SCALAR, 0, 0, "an expression such as com.vy, n1.y - n2.y or m1.force", "") /* CONTEXT: of sensors */ \
-  X(KEEP, LIST, 0, UINT32_MAX, NULL, "list of quantities, or of ") /* the key's words and quantities */ \
-  X(AXES, LIST, 0, UINT32_MAX, "a list of axes such as [{friction: [0.1, 0.2]}]", "list of axes") \
-  X(TIMES, LIST, 1, UINT32_MAX, "a list of times such as [0 s, 20 ms]", "list of times [s]") \
-  X(MAP, MAP, 0, 0, "a mapping {key: value, ...}", "") /* the keys of the section that has the key's name */ \
-  X(THINGS, MAP, 0, 0, "a mapping {name: ..., ...}", "names, each with ") /* from names to things, described by `words` */ \
-  X(NODE_RING, LIST, 3, UINT32_MAX, "three nodes or more such as [n1, n2, n3]", "names of three nodes or more") \
-  X(NAME_PAIR, LIST, 2, 2, "two names such as [a, b]", "two names") \
-  X(FREE, ANY, 0, 0, NULL, "") /* several forms, described by `words` */ \
-  X(NAMES, LIST, 0, UINT32_MAX, "a list of names such as [a, b]", "list of names")
+  X(VERSION, SCALAR, 0, 0, "=[1]=", "the language version 1", "") \
+  X(TEXT, SCALAR, 0, 0, "s", "a text", "text") \
+  X(NUMBER, ANY, 0, 0, "n", NULL, "number") /* an expression of the key's dimension */ \
+  X(PAIR, ANY, 0, 0, "[22n]", NULL, "two numbers") /* a list of two such numbers */ \
+  X(WORD, ANY, 0, 0, "w", NULL, "") /* one of the key's words */ \
+  X(WORDS, LIST, 0, UINT32_MAX, "", NULL, "list of ") \
+  X(FIXED, SCALAR | STRUT_SHAPE_LIST, 0, UINT32_MAX, "A([02=[\"x\", \"y\"]=]|=[\"none\", \"x\", \"y\", \"both\"]=)", NULL, "") /* one of the words, or a list of x and y */ \
+  X(NAME, SCALAR, 0, 0, "s", "a name", "name") \
+  X(NODE_PATH, LIST, 2, UINT32_MAX, "[20s]", "two nodes such as [n1, n2], or the nodes of a running cable", "names of two nodes or more") \
+  X(NODE_TRIPLE, LIST, 3, 3, "[33s]", "three nodes such as [n1, n2, n3]", "names of three nodes") \
+  X(NUMBERS, LIST, 0, UINT32_MAX, "[00n]", "a list of numbers", "list of numbers") \
+  X(POINTS, LIST, 0, UINT32_MAX, "[00[22n]]", "a list of points such as [[0, 0], [2 mm, 3 N]]", "list of `[x, force]`") \
+  X(PROFILE, LIST, 0, UINT32_MAX, "[00[22n]]", "a list of points such as [[0, 0], [10 mm, 0], [20 mm, 5 mm]]", "list of `[x, y]` [m]") \
+  X(LAW, SCALAR | STRUT_SHAPE_MAP, 0, 0, "O(<law>|l)", "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}", "[law](#law), or the kind of one") \
+  X(CONTACT_NODES, ALL | STRUT_SHAPE_LIST, 0, UINT32_MAX, "A([00s]|=[\"all\"]=)", "all, or a list of nodes such as [n1, n2]", "`all`, or list of nodes") \
+  X(NODE_SETS, LIST, 0, UINT32_MAX, "[00A([00s]|s)]", "nodes such as [n1, n2], or a list of such lists", "list of nodes, or list of such lists") \
+  X(GROUPS, SCALAR | STRUT_SHAPE_LIST, 0, UINT32_MAX, "A([00s]|s)", "a group, or a list of groups", "group, or list of groups") \
+  X(SIGNAL, SCALAR | STRUT_SHAPE_MAP, 0, 0, "O(<signal>|s)", "a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name", "[signal](#signal), or the name of one") \
+  X(SIGNALS, LIST, 0, UINT32_MAX, "[00O(<signal>|s)]", "a list of signals", "list of signals") \
+  X(TABLE, LIST, 0, UINT32_MAX, "[00[22n]]", "a list of points such as [[0 s, 0], [1 s, 2]]", "list of `[t, value]`") \
+  X(SETTLE, SCALAR | STRUT_SHAPE_MAP, 0, 0, "O(<settle>|=[true, false, \"yes\", \"no\"]=)", "true, or a mapping such as {limit: 100 s}", "`true`, `false`, or [mapping](#settle)") \
+  X(STEADY, SCALAR | STRUT_SHAPE_MAP, 0, 0, "O(<steady>|=[true, false, \"yes\", \"no\"]=)", "true, or a mapping such as {tolerance: 0.5 %}", "`true`, `false`, or [mapping](#steady)") \
+  X(EXPRESSION, SCALAR, 0, 0, "n", "an expression such as com.vy, n1.y - n2.y or m1.force", "") /* CONTEXT: of sensors */ \
+  X(KEEP, LIST, 0, UINT32_MAX, "[00k]", NULL, "list of quantities, or of ") /* the key's words and quantities */ \
+  X(AXES, LIST, 0, UINT32_MAX, "[00x]", "a list of axes such as [{friction: [0.1, 0.2]}]", "list of axes") \
+  X(TIMES, LIST, 1, UINT32_MAX, "[00n]", "a list of times such as [0 s, 20 ms]", "list of times [s]") \
+  X(MAP, MAP, 0, 0, "", "a mapping {key: value, ...}", "") /* the keys of the section that has the key's name */ \
+  X(THINGS, MAP, 0, 0, "{!t}", "a mapping {name: ..., ...}", "names, each with ") /* from names to things, described by `words` */ \
+  X(NODE_RING, LIST, 3, UINT32_MAX, "[30s]", "three nodes or more such as [n1, n2, n3]", "names of three nodes or more") \
+  X(NAME_PAIR, LIST, 2, 2, "[22s]", "two names such as [a, b]", "two names") \
+  X(FREE, ANY, 0, 0, "", NULL, "") /* several forms, described by `words` */ \
+  X(NAMES, LIST, 0, UINT32_MAX, "[00s]", "a list of names such as [a, b]", "list of names")
 
 /** The dimensions of numbers, X(MEASURE, dimension); CONTEXT: it depends on the use of the mapping. */
 #define STRUT_MEASURES(X) \
@@ -251,6 +252,8 @@ STRUT_API strut_section strut_section_below(const strut_key *key);
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** What the reference says of a type, before the key's words; "" where these are all. */
 const char *strut_type_reference(strut_key_type type);
+/** What the schema says of a type. */
+const char *strut_type_shape(strut_key_type type);
 /** Is the value a scalar, list or mapping, as its type requires? */
 bool strut_shape_fits(strut_key_type type, const struct strut_tree *value);
 /** "a length such as '10 mm'"; written into buffer. */

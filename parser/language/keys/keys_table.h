@@ -233,7 +233,7 @@
   X(SAMPLE, COUNT, "count", NUMBER, NONE, WHOLE(1, 1000000), "", REQUIRED, 0, "", FIELD(strut_sample_keys, count), "Number of points.") \
   X(SAMPLE, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_sample_keys, seed), "Seed of the points; the same seed gives the same points.") \
   X(SAMPLE, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_sample_keys, scheme), "`sobol`: Sobol's sequence, shifted by the seed; `lhs`: Latin hypercube; `random`: independent points.") \
-  X(SAMPLE, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 40, and their distributions.") \
+  X(SAMPLE, OVER, "over", THINGS, NONE, COUNT(1, STRUT_SAMPLE_MOST_NUMBERS), "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters and their distributions.") \
   X(SAMPLE, CORRELATION, "correlation", FREE, NONE, ANY, "", OPTIONAL, 0, "a list of rows of numbers", NONE, "Correlation of the parameters, in their order, such as `[[1, 0.5], [0.5, 1]]`: that of the normal numbers behind their distributions. Without it they are independent.")
 
 #define STRUT_DISTRIBUTION_KEYS(X) \
@@ -255,7 +255,7 @@
 
 #define STRUT_SENSITIVITY_KEYS(X) \
   X(SENSITIVITY, OF, "of", NAMES, NONE, ANY, "", REQUIRED, 0, "a column of the table", LIST(strut_study_sensitivity, of, of_count), "Columns of the table: numbers, or texts such as `outcome`.") \
-  X(SENSITIVITY, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 20, and their distributions.") \
+  X(SENSITIVITY, OVER, "over", THINGS, NONE, COUNT(1, STRUT_SENSITIVITY_MOST), "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters and their distributions.") \
   X(SENSITIVITY, SAMPLES, "samples", NUMBER, NONE, WHOLE(0, 100000), "256", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, samples), "Base samples of Saltelli's design; n parameters need n + 2 points each. 0: derivatives only.") \
   X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, seed), "Seed of the points; the same seed gives the same points.") \
   X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_study_sensitivity, scheme), "As of a [sample](#sample).") \
@@ -282,12 +282,12 @@
 #define STRUT_SEARCH_KEYS(X) \
   X(SEARCH, MAXIMISE, "maximise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "The goal to maximise: a column of the table, or an expression of columns such as `velocity/frequency`. With two, `[velocity, -cost_of_transport]`, the search finds the points that no other beats in both.") \
   X(SEARCH, MINIMISE, "minimise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "The goal to minimise, likewise: `abs(velocity - 10 mm/s)`.") \
-  X(SEARCH, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable), or a list of choices", THINGS(VARIABLE), "The parameters to find.") \
+  X(SEARCH, OVER, "over", THINGS, NONE, COUNT(1, STRUT_SEARCH_MOST_VARIABLES), "", REQUIRED, 0, "the keys of a [variable](#variable), or a list of choices", THINGS(VARIABLE), "The parameters to find.") \
   X(SEARCH, METHOD, "method", WORD, NONE, ANY, "multistart", OPTIONAL, 0, "multistart|crs2|direct|isres|cobyla|bobyqa|sbplx|neldermead|cma|nsga2|bfgs", FIELD(strut_study_search, method), "Global: `multistart` (even points, then `sbplx` from the best two that lie apart), `crs2` (controlled random search, then `sbplx`), `direct` (dividing rectangles, no seed), `isres` (evolution), `cma` (CMA-ES). Local, from a start: `cobyla`, `bobyqa`, `sbplx`, `neldermead`. Two goals always use `nsga2`. `bfgs` follows the derivatives of the goal by the variables from a start, and ends where they vanish; see [searches](search.md#what-can-be-asked-for).") \
   X(SEARCH, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 100000), "200", OPTIONAL, 0, "", FIELD(strut_study_search, evaluations), "Number of different points that each search may compute.") \
   X(SEARCH, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, starts), "Number of searches side by side. The first begins at `start`, the others elsewhere.") \
   X(SEARCH, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294960000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, seed), "Seed of the first search; the next search has the next seed. The same seed gives the same points.") \
-  X(SEARCH, SUBJECT_TO, "subject_to", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Conditions on the best point, such as `work < 2 mJ` or `outcome = I`: `<`, `<=`, `>`, `>=` between expressions of columns, `=` and `!=` between a column of texts and a word.") \
+  X(SEARCH, SUBJECT_TO, "subject_to", NAMES, NONE, COUNT(0, STRUT_SEARCH_MOST_CONDITIONS), "", OPTIONAL, 0, "", BY_HAND, "Conditions on the best point, such as `work < 2 mJ` or `outcome = I`: `<`, `<=`, `>`, `>=` between expressions of columns, `=` and `!=` between a column of texts and a word.") \
   X(SEARCH, WORST_OVER, "worst_over", THINGS, NONE, ANY, "", OPTIONAL, 0, "a list of values, or the keys of a [range](#range)", BY_HAND, "Scenarios: each evaluation computes all combinations of these values, of which the worst counts. `subject_to` must hold in all.")
 
 #define STRUT_VARIABLE_KEYS(X) \
@@ -299,16 +299,16 @@
   X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: whole numbers only, in the SI unit.")
 
 #define STRUT_FIT_KEYS(X) \
-  X(FIT, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable)", THINGS(VARIABLE), "The parameters to find, up to 20, by their ranges; the first start is at `start`.") \
-  X(FIT, MATCH, "match", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [match](#match), and what is compared", THINGS(MATCH), "Sets of measured numbers, up to 10, all of which count together.") \
+  X(FIT, OVER, "over", THINGS, NONE, COUNT(1, STRUT_FIT_MOST_VARIABLES), "", REQUIRED, 0, "the keys of a [variable](#variable)", THINGS(VARIABLE), "The parameters to find, by their ranges; the first start is at `start`.") \
+  X(FIT, MATCH, "match", THINGS, NONE, COUNT(1, STRUT_FIT_MOST_MATCHES), "", REQUIRED, 0, "the keys of a [match](#match), and what is compared", THINGS(MATCH), "Sets of measured numbers, all of which count together.") \
   X(FIT, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "8", OPTIONAL, 0, "", FIELD(strut_study_fit, starts), "Number of fits from different starts; all but the first begin anywhere in the ranges.") \
   X(FIT, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_fit, seed), "Seed of the starts; the same seed gives the same starts.")
 
 #define STRUT_MATCH_KEYS(X) \
-  X(MATCH, TIME, "time", NAME, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Column of the times of a motion. 0 is where the run starts.") \
-  X(MATCH, DISPLACEMENT, "displacement", NAME, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Column of the displacements of a `path` over a coordinate, as `path` of the study says.") \
+  X(MATCH, TIME, "time", NAME, NONE, ANY, "", OPTIONAL, 13, "", NONE, "Column of the times of a motion. 0 is where the run starts.") \
+  X(MATCH, DISPLACEMENT, "displacement", NAME, NONE, ANY, "", OPTIONAL, 13, "", NONE, "Column of the displacements of a `path` over a coordinate, as `path` of the study says.") \
   X(MATCH, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Column of the forces at these displacements.") \
-  X(MATCH, COMPUTE, "compute", WORD, NONE, ANY, "", OPTIONAL, 0, "run|equilibria|modes|rigidity|path|form", FIELD(strut_fit_match, compute), "What is compared are columns of the table of a study that computes this: `frequency_1: 12.5 Hz`.") \
+  X(MATCH, COMPUTE, "compute", WORD, NONE, ANY, "", OPTIONAL, 13, "run|equilibria|modes|rigidity|path|form", FIELD(strut_fit_match, compute), "What is compared are columns of the table of a study that computes this: `frequency_1: 12.5 Hz`.") \
   X(MATCH, NOISE, "noise", NUMBER, CONTEXT, ANY, "not known", OPTIONAL, 0, "", NONE, "Standard deviation of the numbers. Without it, it follows from the residuals, which then cannot tell whether the model is right.") \
   X(MATCH, ALIGN, "align", MAP, NONE, ANY, "", OPTIONAL, 0, "", SELF(strut_fit_match, ALIGN), "What else may move the model onto the numbers.") \
   X(MATCH, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "a value", NONE, "Values of other parameters in this match, such as the drive of a film. What one match sets, all must set.")
@@ -322,12 +322,67 @@
   X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", LATER(FIELD(strut_study_follow, over)), "The parameter that varies.") \
   X(FOLLOW, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, from), "Lower end of its range.") \
   X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, to), "Upper end of its range.") \
-  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", LIST(strut_study_follow, at, at_count), "Values at which runs find the first motions.") \
-  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "a configuration", LIST(strut_study_follow, start_from, start_count), "Configurations in whose equilibria these runs start.") \
+  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, COUNT(1, STRUT_STUDY_FOLLOW_MOST_AT), "the model's own value, or the middle", OPTIONAL, 0, "", LIST(strut_study_follow, at, at_count), "Values at which runs find the first motions.") \
+  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, COUNT(1, STRUT_STUDY_FOLLOW_MOST_FROM), "as the model says", OPTIONAL, 0, "a configuration", LIST(strut_study_follow, start_from, start_count), "Configurations in whose equilibria these runs start.") \
   X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, SHARE(STRUT_FOLLOW_MOST_ACCURACY), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities.") \
   X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "Integration method; it must locate events if there are contacts or cables.") \
   X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch in each direction.") \
   X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kicks the stable motions at the values of `at`, to find how far they may be pushed.")
+
+/**
+ * Keys that go together, X(section, given, rule, keys, message): where a mapping has one of the keys `given` ("" in any case), it
+ *   NEEDS   one of the alternatives, each a key or several joined by +; ONLY: and no other of all these. Reported at the thing's name;
+ *   WANTS   likewise, reported at the key that is given;
+ *   FORBIDS each of the keys, where it stands.
+ * In a message %o is who the mapping belongs to, %k the key that must not be there, %g the key that is given, and %v its value.
+ */
+#define STRUT_KEY_RULES(X) \
+  X(COLLISION, "nodes|members|between", FORBIDS, "node", "%o names a node beside a pair, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' with two members, or 'between'") \
+  X(COLLISION, "", NEEDS, "nodes|members|between|node+member", "%o does not name two things, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' with two members, or 'between'") \
+  X(DISTANCE, "", ONLY, "nodes+along|node+line", "%o must have 'nodes' and 'along', or 'node' and 'line'") \
+  X(CELL, "pressure|gas", FORBIDS, "stiffness|law|damping|rest_area", "%o gives '%k' beside '%g'; a cell is elastic, or has a pressure, or a gas") \
+  X(CELL, "", NEEDS, "pressure|gas|stiffness|law|damping|rest_area", "%o lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the 'stiffness' of its area") \
+  X(LAW, "data", NEEDS, "over", "%o lacks 'over', expected the column of x, such as tensile.x") \
+  X(ACTUATOR, "", NEEDS, "member|hinge|cell", "%o lacks 'member', expected the name of a member, or 'hinge' with the name of a hinge") \
+  X(ACTUATOR, "", NEEDS, "signal|force|moment", "%o lacks 'signal', expected a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name; or 'force' or 'moment' instead") \
+  X(ACTUATOR, "cell", FORBIDS, "force|moment", "%o gives a '%k' to a cell, whose pressure a 'signal' drives") \
+  X(ACTUATOR, "hinge", FORBIDS, "force", "%o gives a 'force' to a hinge, which takes a 'moment'") \
+  X(ACTUATOR, "member", FORBIDS, "moment", "%o gives a 'moment' to a member, which takes a 'force'") \
+  X(LOAD, "", NEEDS, "node|hinge|member", "%o lacks 'node', expected the name of a node, or 'hinge' or 'member' for a moment") \
+  X(LOAD, "hinge|member", FORBIDS, "force", "%o gives a 'force' to a hinge or member, which takes a 'moment'") \
+  X(LOAD, "hinge|member", NEEDS, "moment|force", "%o lacks 'moment', expected a moment such as '2 N m'") \
+  X(LOAD, "node", FORBIDS, "moment", "%o gives a 'moment' to a node, which takes a 'force'") \
+  X(LOAD, "node", NEEDS, "force|moment", "%o lacks 'force', expected two numbers such as [10 N, 0]") \
+  X(UNBALANCE, "", NEEDS, "speed|angle", "%o lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal") \
+  X(GROUND, "profile|circle", FORBIDS, "height|slope|through|normal", "%o is a %g, so it has no '%k'") \
+  X(FRICTION, "mu_static|mu_kinetic", FORBIDS, "mu", "%o gives both 'mu' and '%g', expected 'mu', or 'mu_static' and 'mu_kinetic'") \
+  X(FRICTION, "mu_static|mu_kinetic", FORBIDS, "mu_forward", "%o gives both 'mu_forward' and '%g', expected 'mu', or 'mu_forward' and 'mu_backward'") \
+  X(FRICTION, "mu_forward", FORBIDS, "mu", "%o gives both 'mu' and 'mu_forward', expected 'mu', or 'mu_forward' and 'mu_backward'") \
+  X(SIGNAL, "", NEEDS, "constant|sine|half_sine|square|ramp|table|sum|expression|data", "expected a kind of signal for %o") \
+  X(STARTS, "", NEEDS, "contact|sensor", "%o names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}") \
+  X(STARTS, "sensor", NEEDS, "above|below|contact", "%o needs a level, 'above' or 'below', of its sensor") \
+  X(STARTS, "contact", FORBIDS, "above|below", "%o gives a level, which only a sensor passes") \
+  X(RELAY, "", ONLY, "on_above+off_below|on_below+off_above", "%o needs two thresholds: on_above with off_below, or on_below with off_above") \
+  X(SENSOR, "", NEEDS, "length|force|angle|contact|position|velocity|energy|area|pressure|distance|contact_force|collision_force|of", "%o senses nothing; write one of length, force, angle, contact, position, velocity, energy, area, pressure, distance, contact_force and collision_force, such as {length: MEMBER}, or any column: {of: com.vy}") \
+  X(SENSOR, "position|velocity", NEEDS, "along", "%o needs 'along': x or y") \
+  X(INITIAL, "equilibrium", FORBIDS, "configuration|positions|settle", "%o gives both 'equilibrium' and '%k', expected one of them") \
+  X(RUN, "periods", NEEDS, "of", "%o lacks 'of', expected the actuator, load or signal whose periods count") \
+  X(SCENE_PATH, "", NEEDS, "stages|friction", "%o lacks 'stages', expected a list of stages such as [{load: NAME}]") \
+  X(STAGE, "", NEEDS, "load|over|release", "%o lacks 'load', 'over' or 'release'") \
+  X(STAGE, "over", WANTS, "until", "%o lacks 'until', the end value of '%v'") \
+  X(STAGE, "release", FORBIDS, "until", "%o gives 'until' beside 'release', which ends without reaction") \
+  X(STUDY, "", NEEDS, "axes|sensitivity|search|follow|fit", "%o lacks 'axes', expected a list of axes such as [{friction: [0.1, 0.2]}]") \
+  X(STUDY, "shape", FORBIDS, "like", "'shape' and 'like' of %o exclude each other") \
+  X(STUDY, "search", FORBIDS, "refine", "a study that searches has no grid to refine") \
+  X(STUDY, "sensitivity", FORBIDS, "refine|trajectories|search", "'%k' and '%g' exclude each other: use two studies") \
+  X(STUDY, "follow", FORBIDS, "refine|trajectories|search|sensitivity|keep|check|limit|shape|like", "'%k' and '%g' exclude each other: use two studies") \
+  X(STUDY, "fit", FORBIDS, "axes|variants|refine|search|follow|sensitivity|trajectories|check|keep|compute", "'%k' and '%g' exclude each other: use two studies") \
+  X(RANGE, "", NEEDS, "step|count", "the range of %o lacks 'step' or 'count'") \
+  X(DISTRIBUTION, "", NEEDS, "uniform|log_uniform|normal|lognormal|triangular", "expected a distribution such as {uniform: [1, 2]} for %o") \
+  X(PATH, "over", NEEDS, "until", "%o lacks 'until', the end value of '%v'") \
+  X(SEARCH, "", NEEDS, "maximise|minimise", "%o lacks 'maximise' or 'minimise', a column of the table or an expression of columns") \
+  X(MATCH, "displacement|compute", FORBIDS, "align", "'align' of %o is for motions and shapes") \
+  X(MATCH, "displacement", NEEDS, "force", "%o of a displacement lacks 'force'")
 
 /** The sections: X(NAME, name, its rows, the text above their table in the reference). */
 #define STRUT_SECTIONS(X) \

@@ -277,7 +277,7 @@ static void apply_setting(strut_reader *reader, const strut_setting *setting) {
   if (!parameters) {
     snprintf(message, sizeof message, "the scene has no parameter '%s'%s",
              strut_sanitised_text(reader, setting->name),
-             strut_hint(reader, setting->name, parameter_name, reader, reader->parameter_count));
+             strut_hint(reader, setting->name, parameter_name, reader));
     const strut_tree *key = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS)->key;
     report_setting(reader, setting, key ? key->place : strut_root_place(reader), message);
   } else if (parameters->set) {
@@ -440,13 +440,11 @@ void strut_read_groups(strut_reader *reader) {
   size_t i = 0;
   if (!map) return;
   reader->groups = strut_scratch_array(reader, map->count, sizeof *reader->groups);
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, reader->groups ? map : NULL) {
     reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
   }
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
-       key = strut_following_entry(reader, key))
+  STRUT_ENTRIES (reader, key, reader->groups ? map : NULL)
     read_group(reader, key, &reader->groups[i++]);
 }
 
@@ -460,8 +458,7 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
                               strut_owner_text(reader, owner), (unsigned)value->count,
                               STRUT_MOST_GROUPS);
   const strut_namespace names = {"group", &reader->group_names, strut_row_name,
-                                 STRUT_NAMED(reader->groups, reader->group_count),
-                                 reader->group_count};
+                                 STRUT_NAMED(reader->groups, reader->group_count)};
   for (; item && known; item = value == item ? NULL : item->next) {
     if (strut_read_name_of(reader, item, key, owner, &names) < 0)
       fine = false;

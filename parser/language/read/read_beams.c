@@ -122,8 +122,7 @@ void strut_read_beams(strut_reader *reader) {
   size_t parts = 0, clamps = 0;
   if (!map || !scene->nodes) return;
   reader->beams = strut_scratch_array(reader, map->count, sizeof *reader->beams);
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->beams;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, reader->beams ? map : NULL) {
     strut_beam *beam = &reader->beams[reader->beam_count];
     if (!read_beam(reader, key, beam)) {
       reader->ends_unknown = true;
@@ -266,8 +265,7 @@ static bool find_target(strut_reader *reader, const strut_beam *beam, int end,
     if (!reader->ends_unknown)
       strut_report_error(reader, value->place, "unknown member or beam '%s'%s",
                          strut_sanitised_text(reader, name),
-                         strut_hint(reader, name, target_name, reader,
-                                    reader->scene->member_count + reader->beam_count));
+                         strut_hint(reader, name, target_name, reader));
     return false;
   }
   target->end = ends[1] == beam->node[end];

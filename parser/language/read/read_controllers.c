@@ -147,8 +147,7 @@ bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t 
 void strut_list_controllers(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONTROLLERS);
   if (!map || !reader->named) return;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     if (!strut_check_variable_name(reader, key, "controller")) continue;
     if (strut_name_map_find(&reader->signal_names, key->text) >= 0)
       strut_report_error(reader, key->place, "there is a signal '%s' already", key->text);
@@ -261,20 +260,6 @@ bool strut_is_relay(const strut_tree *map) {
 
 /* ---- relays: controllers that switch between two values ---- */
 
-static bool read_thresholds(strut_reader *reader, const strut_tree *key, strut_fields *fields,
-                            strut_dimension input, strut_signal *relay) {
-  bool above = strut_given(fields, STRUT_KEY_RELAY_ON_ABOVE) != NULL;
-  int first = above ? STRUT_KEY_RELAY_ON_ABOVE : STRUT_KEY_RELAY_OFF_ABOVE;
-  int second = above ? STRUT_KEY_RELAY_OFF_BELOW : STRUT_KEY_RELAY_ON_BELOW;
-  if (!strut_given(fields, first) || !strut_given(fields, second))
-    return strut_report_error(
-        reader, key->place,
-        "controller '%s' needs two thresholds: on_above with off_below, or on_below with off_above",
-        key->text);
-  bool fine = strut_store_number(reader, fields, first, input, relay);
-  return strut_store_number(reader, fields, second, input, relay) && fine;
-}
-
 /* The two values, which measure the same; what that is, the use of the signal decides for plain numbers. */
 static bool read_values(strut_reader *reader, strut_fields *fields, strut_relay *relay,
                         strut_quantity *unit) {
@@ -300,13 +285,15 @@ static int32_t read_relay(strut_reader *reader, const strut_tree *key) {
   strut_quantity input, unit = {.bare = true};
   const strut_tree *of = strut_tree_find(key->next, "of", NULL);
   if (strut_ends_at_comma(reader, of, "of", owner)) return -1;
-  strut_read_fields(reader, STRUT_SECTION_RELAY, key->next, owner, &fields);
+  strut_read_fields_of(reader, STRUT_SECTION_RELAY, key, owner, &fields);
   strut_require(reader, &fields, key->place);
   if (fields.broken || !strut_read_signal_program(reader, of, "of", owner, &signal.program, &input))
     return -1;
-  strut_store(reader, &fields, &signal);
-  bool fine =
-      read_thresholds(reader, key, &fields, input.bare ? STRUT_DIM_NONE : input.dimension, &signal);
+  bool fine = strut_store(reader, &fields, &signal);
+  for (int k = STRUT_KEY_RELAY_ON_ABOVE; k <= STRUT_KEY_RELAY_OFF_ABOVE; k++)
+    fine = strut_store_number(reader, &fields, k, input.bare ? STRUT_DIM_NONE : input.dimension,
+                              &signal) &&
+           fine;
   fine = read_values(reader, &fields, &signal.relay, &unit) && fine;
   return fine ? strut_add_controller_signal(reader, key, &signal, unit.dimension, unit.bare, NULL)
               : -1;
@@ -413,7 +400,5 @@ void strut_read_pipes(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_PIPES);
   if (!map || !reader->scene->sensors || !reader->scene->states) return;
   reader->pipe_drives = strut_scratch_array(reader, 2 * map->count, sizeof *reader->pipe_drives);
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->pipe_drives;
-       key = strut_following_entry(reader, key))
-    read_pipe(reader, key);
+  STRUT_ENTRIES (reader, key, reader->pipe_drives ? map : NULL) read_pipe(reader, key);
 }

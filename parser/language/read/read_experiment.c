@@ -13,15 +13,6 @@ enum { MOST_POSITIONS = 20000000 };
 
 static const strut_owner search_owner = {"the search for equilibria", NULL};
 
-/* The configuration that is being read, which is the last one. */
-static void take_position(strut_reader *reader, int32_t node, const double pair[2],
-                          const strut_tree *value) {
-  const strut_scene *scene = reader->scene;
-  (void)value;
-  memcpy(scene->configurations[scene->configuration_count - 1].position[node], pair,
-         2 * sizeof *pair);
-}
-
 /* One list of nodes; unknown ones are reported and left out. */
 static bool read_set(strut_reader *reader, const strut_tree *list, const char *key,
                      strut_owner owner, strut_node_set *set) {
@@ -102,6 +93,12 @@ static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner o
   return fine;
 }
 
+static bool read_shape(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                       strut_configuration *configuration) {
+  return strut_read_node_pairs(reader, map, owner, STRUT_DIM_LENGTH, configuration->position,
+                               sizeof *configuration->position);
+}
+
 /* `{contacts: ..., shape: ...}` */
 static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner owner,
                       strut_configuration *configuration) {
@@ -111,8 +108,7 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
   const strut_tree *shape = strut_given(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
   bool fine = strut_store(reader, &fields, configuration) && !fields.broken;
   configuration->shaped = shape != NULL;
-  return (!shape || strut_read_node_pairs(reader, shape, owner, STRUT_DIM_LENGTH, take_position)) &&
-         fine;
+  return (!shape || read_shape(reader, shape, owner, configuration)) && fine;
 }
 
 bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void *object) {
@@ -134,7 +130,7 @@ bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void 
     keys |= is_key(reader, tree);
   if (keys) return read_keys(reader, value, owner, configuration);
   configuration->shaped = true; /* `{}` is the drawn shape */
-  return strut_read_node_pairs(reader, value, owner, STRUT_DIM_LENGTH, take_position);
+  return read_shape(reader, value, owner, configuration);
 }
 
 void strut_read_configurations(strut_reader *reader) {
@@ -169,18 +165,6 @@ void strut_read_search(strut_reader *reader) {
 
 /* ---- the initial state; solver, run and output ---- */
 
-static void store_start(strut_reader *reader, int32_t node, const double pair[2],
-                        const strut_tree *value) {
-  (void)value;
-  memcpy(reader->scene->nodes[node].start, pair, 2 * sizeof *pair);
-}
-
-static void store_velocity(strut_reader *reader, int32_t node, const double pair[2],
-                           const strut_tree *value) {
-  memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
-  if (reader->velocity_source) reader->velocity_source[node] = value;
-}
-
 /* `settle` and `steady` are true, false or a mapping of their own, whose values are of `within`. */
 static void read_switch(strut_reader *reader, strut_fields *of, int key, const char *owner,
                         strut_owner within, strut_fields *fields) {
@@ -209,37 +193,18 @@ static void read_state(strut_reader *reader, int32_t configuration) {
   for (size_t i = 0; configuration >= 0 && i < scene->node_count; i++)
     memcpy(scene->nodes[i].start, scene->configurations[configuration].position[i],
            sizeof scene->nodes[i].start);
-  if (positions)
+  if (positions && scene->nodes)
     strut_read_node_pairs(reader, positions,
                           (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
-                          store_start);
+                          scene->nodes->start, sizeof *scene->nodes);
   if (velocity->state == STRUT_GIVEN)
     for (size_t i = 0; i < scene->node_count; i++)
       for (int c = 0; c < 2; c++)
         scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
-  if (!velocities) return;
-  reader->velocity_source =
-      strut_scratch_array(reader, scene->node_count, sizeof *reader->velocity_source);
+  if (!velocities || !scene->nodes) return;
   strut_read_node_pairs(reader, velocities,
                         (strut_owner){"'velocities' of the initial state", NULL},
-                        STRUT_DIM_VELOCITY, store_velocity);
-}
-
-/* An equilibrium determines all positions, and that the structure is at rest. */
-static void read_equilibrium(strut_reader *reader) {
-  static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
-                               STRUT_KEY_INITIAL_SETTLE};
-  const strut_slot *equilibrium = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_EQUILIBRIUM);
-  int32_t index = find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
-  for (size_t i = 0; equilibrium->key && i < sizeof rivals / sizeof rivals[0]; i++) {
-    const strut_slot *rival = strut_slot_of(&reader->initial, rivals[i]);
-    if (!rival->key) continue;
-    strut_report_error(reader, rival->key->place,
-                       "the initial state gives both 'equilibrium' and '%s', expected one of them",
-                       rival->key->text);
-    return;
-  }
-  reader->scene->start_equilibrium = index;
+                        STRUT_DIM_VELOCITY, scene->nodes->velocity, sizeof *scene->nodes);
 }
 
 void strut_read_initial(strut_reader *reader) {
@@ -247,7 +212,9 @@ void strut_read_initial(strut_reader *reader) {
                           "the initial state", &reader->initial))
     return;
   read_state(reader, find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
-  read_equilibrium(reader);
+  /* An equilibrium determines all positions, and that the structure is at rest. */
+  int32_t equilibrium = find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  if (strut_check_rules(reader, &reader->initial)) reader->scene->start_equilibrium = equilibrium;
   read_switch(reader, &reader->initial, STRUT_KEY_INITIAL_SETTLE, "the initial state",
               (strut_owner){"the settling", NULL}, &reader->settle);
 }
@@ -281,11 +248,10 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
                             STRUT_KEY_SCENE_SIGNALS};
     for (int i = 0; i < 3; i++)
       if (strut_slot_of(&reader->top, sections[i])->state == STRUT_BROKEN) return -1;
-    size_t names = scene->actuator_count + scene->load_count + reader->named_count;
     strut_report_error(reader, value->place,
                        "unknown actuator, load or signal '%s' in 'of' of the run%s",
                        strut_sanitised_text(reader, value->text),
-                       strut_hint(reader, value->text, driver_name, reader, names));
+                       strut_hint(reader, value->text, driver_name, reader));
     return -1;
   }
   for (int32_t i = 1; i < count; i++)
@@ -308,19 +274,11 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
 static void read_of(strut_reader *reader) {
   strut_experiment *experiment = reader->experiment;
   const strut_tree *of = strut_given(&reader->run, STRUT_KEY_RUN_OF);
-  strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
   bool broken = false;
-  if (!strut_mentions(&reader->run, STRUT_KEY_RUN_OF) &&
-      strut_given(&reader->run, STRUT_KEY_RUN_PERIODS)) {
-    strut_report_error(
-        reader, top->key->place,
-        "the run lacks 'of', expected the actuator, load or signal whose periods count");
-    reader->run.broken = true;
-  } else if (of && strut_mentions(&reader->run, STRUT_KEY_RUN_PERIODS)) {
-    experiment->period_signal = find_signal_of(reader, of, &broken);
-    experiment->period_of = strut_keep_text(reader, of->text);
-    if (broken) reader->run.broken = true;
-  }
+  if (!of || !strut_mentions(&reader->run, STRUT_KEY_RUN_PERIODS)) return;
+  experiment->period_signal = find_signal_of(reader, of, &broken);
+  experiment->period_of = strut_keep_text(reader, of->text);
+  if (broken) reader->run.broken = true;
 }
 
 /* The length of a window: in periods if the run is in periods, otherwise in seconds. */
@@ -406,8 +364,7 @@ void strut_read_experiment(strut_reader *reader) {
 int32_t strut_read_coordinate(strut_reader *reader, const strut_tree *value, const char *key,
                               strut_owner owner) {
   if (value->kind != STRUT_TREE_SCALAR) {
-    strut_report_error(reader, value->place, "expected NODE.x or NODE.y for '%s' of %s, found %s",
-                       key, strut_owner_text(reader, owner), strut_found(reader, value));
+    strut_refuse_value(reader, value, key, owner, "NODE.x or NODE.y");
     return -1;
   }
   int32_t at = strut_coordinate_find(reader->scene, value->text);
@@ -468,15 +425,6 @@ static bool read_until(strut_reader *reader, strut_fields *fields, strut_dimensi
   const strut_slot *until = strut_slot_of(fields, STRUT_KEY_STAGE_UNTIL);
   bool given = until->state == STRUT_GIVEN;
   stage->until = stage->load ? 1.0 : 0.0;
-  if (stage->release && given)
-    return strut_report_error(reader, until->key->place,
-                              "%s gives 'until' beside 'release', which ends without reaction",
-                              strut_owner_text(reader, fields->owner));
-  if (stage->over && !given)
-    return strut_report_error(reader, strut_slot_of(fields, STRUT_KEY_STAGE_OVER)->key->place,
-                              "%s lacks 'until', the end value of '%s'",
-                              strut_owner_text(reader, fields->owner),
-                              strut_sanitised_text(reader, stage->over));
   return !given || strut_read_number(reader, until->value, "until", fields->owner, dimension,
                                      STRUT_WITHIN(ANY), &stage->until);
 }
@@ -487,9 +435,7 @@ static bool read_stop(strut_reader *reader, const strut_tree *map, strut_owner o
   stage->stop = -1;
   if (!map) return true;
   if (map->kind != STRUT_TREE_MAP || map->count != 1)
-    return strut_report_error(reader, map->place,
-                              "expected {NODE.x: LENGTH} for 'stop' of %s, found %s",
-                              strut_owner_text(reader, owner), strut_found(reader, map));
+    return strut_refuse_value(reader, map, "stop", owner, "{NODE.x: LENGTH}");
   stage->stop = strut_read_coordinate(reader, map->first, "stop", owner);
   if (stage->stop < 0 ||
       !strut_read_number(reader, map->first->next, "stop", owner, STRUT_DIM_LENGTH,
@@ -512,9 +458,6 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
                               strut_found(reader, item));
   bool fine = strut_read_object(reader, STRUT_SECTION_STAGE, item, owner, &fields, stage);
   if (fields.broken) return false;
-  if (!strut_given(&fields, STRUT_KEY_STAGE_LOAD) && !stage->over && !stage->release)
-    return strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'",
-                              owner.kind);
   fine = read_followed(reader, &fields, stage, &dimension) &&
          read_until(reader, &fields, dimension, stage) && fine;
   return read_stop(reader, strut_given(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;
@@ -575,10 +518,6 @@ void strut_read_stages(strut_reader *reader) {
   if (path.broken) return;
   strut_store(reader, &path, experiment);
   const strut_tree *stages = strut_given(&path, STRUT_KEY_SCENE_PATH_STAGES);
-  if (!strut_mentions(&path, STRUT_KEY_SCENE_PATH_STAGES) &&
-      !strut_mentions(&path, STRUT_KEY_SCENE_PATH_FRICTION))
-    strut_report_error(reader, value->place,
-                       "the path lacks 'stages', expected a list of stages such as [{load: NAME}]");
   if (!stages) return;
   if (stages->kind != STRUT_TREE_LIST || !stages->count) {
     strut_report_error(reader, stages->place,

@@ -77,23 +77,12 @@ static bool read_of(strut_reader *reader, const strut_tree *value, strut_owner o
 
 bool strut_read_sensor(strut_reader *reader, strut_fields *fields, void *object) {
   strut_sensor *sensor = object;
-  const strut_slot *along = strut_slot_of(fields, STRUT_KEY_SENSOR_ALONG);
-  const strut_tree *of = strut_given(fields, STRUT_KEY_SENSOR_OF);
+  const strut_tree *along = strut_given(fields, STRUT_KEY_SENSOR_ALONG),
+                   *of = strut_given(fields, STRUT_KEY_SENSOR_OF);
   if (fields->broken || (of && !read_of(reader, of, fields->owner, sensor))) return false;
   strut_column_kind kind = strut_sensor_column(sensor).kind;
   bool directed = kind >= STRUT_COLUMN_NODE_X && kind <= STRUT_COLUMN_NODE_VY;
-  if (kind == STRUT_COLUMN_TIME)
-    strut_report_error(reader, fields->key->place,
-                       "sensor '%s' senses nothing; write one of length, force, angle, contact, "
-                       "position, velocity, energy, area, pressure, distance, contact_force and "
-                       "collision_force, such as {length: MEMBER}, or any column: {of: com.vy}",
-                       fields->key->text);
-  else if (directed && !sensor->length && along->state == STRUT_ABSENT)
-    strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",
-                       fields->key->text);
-  else
-    return !directed || turn_sensor(reader, sensor->length ? of : along->value, sensor);
-  return false;
+  return !directed || turn_sensor(reader, of ? of : along, sensor);
 }
 
 /* ---- expressions ---- */
@@ -249,8 +238,7 @@ static bool read_phase(strut_reader *reader, const strut_tree *key, strut_quanti
 
 static void list_states(strut_reader *reader, int of, bool oscillators) {
   const strut_tree *map = strut_entries(reader, of);
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     strut_quantity q = {.bare = true};
     bool fine = strut_check_variable_name(reader, key, oscillators ? "oscillator" : "state");
     fine = (oscillators ? read_phase(reader, key, &q) : read_start(reader, key, &q)) && fine;
@@ -293,8 +281,7 @@ static bool read_rate(strut_reader *reader, const strut_tree *key, size_t state)
 
 static void read_rates(strut_reader *reader, int of, bool oscillators) {
   const strut_tree *map = strut_entries(reader, of);
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
     strut_source *source = i < 0 ? NULL : &reader->things[STRUT_THING_STATE].source[i];
     if (!source || source->broken) continue;

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Mappings by the table of keys: unknown keys, missing keys, typed values. See reader.h. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/language/read/reader.h"
 
 strut_slot *strut_slot_of(strut_fields *fields, int key) {
@@ -162,10 +164,10 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
   while (words.count < 64 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
-  return strut_report_error(
-      reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
-      strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
-      strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found '%s'%s",
+                            expected, key->name, strut_owner_text(reader, owner),
+                            strut_sanitised_text(reader, value->text),
+                            strut_hint(reader, value->text, name_of_words, &words));
 }
 
 /* A list of words without repetition; bits gets one bit for each. */
@@ -219,17 +221,33 @@ static bool read_version(strut_reader *reader, const strut_tree *value) {
                             strut_sanitised_text(reader, value->text));
 }
 
+/* A plain number above a whole turn, or 45 deg of a slope, is in radians, and probably meant in degrees. */
+static void note_radians(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                         double angle) {
+  const char *text = value->text;
+  double most = key == strut_key_at(STRUT_KEY_GROUND_SLOPE) ? STRUT_TAU / 8 : STRUT_TAU;
+  if (fabs(angle) > most && strut_number_scan(text, strlen(text)) == strlen(text))
+    strut_note(reader->diagnostics, value->place,
+               "a %s of %s is in radians, %.6g deg; write '%s deg' if that is meant", key->name,
+               text, angle * 360.0 / STRUT_TAU, text);
+}
+
 static bool read_number(strut_reader *reader, const strut_key *key, const strut_tree *value,
                         strut_owner owner, double *number) {
   if (key->measure == STRUT_MEASURE_CONTEXT) return true;
-  return strut_read_number(reader, value, key->name, owner, strut_measure_dimension(key->measure),
-                           key->limits, number);
+  bool fine = strut_read_number(reader, value, key->name, owner,
+                                strut_measure_dimension(key->measure), key->limits, number);
+  if (fine && key->measure == STRUT_MEASURE_ANGLE) note_radians(reader, key, value, *number);
+  return fine;
 }
 
 /* Reads a value whose type needs no code of the section's own; false if it was reported. */
 static bool read_typed(strut_reader *reader, const strut_key *key, const strut_tree *value,
                        strut_owner owner, strut_slot *slot) {
   strut_key_type type = key->type;
+  if (key->limits.range == STRUT_RANGE_COUNT &&
+      !strut_check_limits(reader, value, key->name, owner, key->limits, value->count))
+    return false;
   if (type == STRUT_TYPE_VERSION) return read_version(reader, value);
   if (type == STRUT_TYPE_NUMBER && key->section == STRUT_SECTION_SCENE) return true; /* as pairs */
   if (type == STRUT_TYPE_NUMBER) return read_number(reader, key, value, owner, slot->number);
@@ -270,7 +288,7 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields,
   int key = strut_key_named(reader, fields->section, key_tree);
   if (key < 0) {
     int meant = strut_unknown_key(reader, key_tree, &fields->section, 1, fields->owner);
-    fields->broken = true;
+    fields->broken = fields->strange = true;
     if (meant >= 0 && strut_slot_of(fields, meant)->state == STRUT_ABSENT)
       strut_slot_of(fields, meant)->state = STRUT_BROKEN;
     return;
@@ -284,23 +302,6 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields,
     slot->state = STRUT_BROKEN;
   }
   if (slot->state == STRUT_BROKEN) fields->broken = true;
-}
-
-/* `mu` sets both coefficients, so that neither may be given beside it. */
-static void check_coefficients(strut_reader *reader, strut_fields *fields) {
-  const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
-  const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
-  const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
-  const strut_slot *forward = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_FORWARD);
-  const strut_slot *rival = statics->key ? statics : kinetics->key ? kinetics : forward;
-  bool directions = forward->key != NULL;
-  if (!mu->key) mu = forward;
-  if (!mu->key || !rival->key || rival == mu) return;
-  strut_report_error(reader, mu->key->place, "%s gives both '%s' and '%s', expected %s",
-                     strut_owner_text(reader, fields->owner), mu->key->text, rival->key->text,
-                     directions ? "'mu', or 'mu_forward' and 'mu_backward'"
-                                : "'mu', or 'mu_static' and 'mu_kinetic'");
-  fields->broken = true;
 }
 
 void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
@@ -320,7 +321,6 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
   }
   for (const strut_tree *tree = map->first; tree; tree = tree->next->next)
     read_pair_of_map(reader, fields, tree);
-  if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields);
 }
 
 void strut_read_fields_of(strut_reader *reader, strut_section section, const strut_tree *key,
@@ -454,7 +454,7 @@ static bool is_met(strut_fields *fields, const companion *self, const strut_slot
          strut_word_find(self->words, word) >= 0;
 }
 
-bool strut_check_companions(strut_reader *reader, strut_fields *fields) {
+static bool check_companions(strut_reader *reader, strut_fields *fields) {
   bool fine = true;
   for (const companion *c = companions; c < companions + COMPANIONS; c++) {
     const strut_slot *other = NULL;
@@ -481,4 +481,99 @@ const char *strut_study_key_computes(int key) {
   for (const companion *c = companions; c < companions + COMPANIONS; c++)
     if (c->key == key && c->other == STRUT_KEY_STUDY_COMPUTE) return c->words;
   return NULL;
+}
+
+/* ---- keys that go together ---- */
+
+typedef struct rule {
+  strut_section section;
+  const char *given;
+  enum { NEEDS, ONLY, WANTS, FORBIDS } kind;
+  const char *keys, *message;
+} rule;
+
+static const rule rules[] = {
+#define RULE_ROW(section, given, kind, keys, message)                                              \
+  {STRUT_SECTION_##section, given, kind, keys, message},
+    STRUT_KEY_RULES(RULE_ROW)};
+
+/* The slot of the i-th of "a|b" where the mapping has that key, or else NULL. */
+static strut_slot *mentioned(strut_fields *fields, const char *keys, int i) {
+  char name[40];
+  if (!strut_word_at(keys, i, name, sizeof name)) return NULL;
+  strut_slot *slot = strut_slot_of(fields, strut_key_find(fields->section, name));
+  return slot->state != STRUT_ABSENT ? slot : NULL;
+}
+
+static int count_words(const char *keys) {
+  int count = *keys != '\0';
+  for (; *keys; keys++) count += *keys == '|';
+  return count;
+}
+
+static int count_mentioned(strut_fields *fields, const char *keys) {
+  int count = 0;
+  for (int i = count_words(keys); i-- > 0;) count += mentioned(fields, keys, i) != NULL;
+  return count;
+}
+
+/* Has the mapping one of the alternatives, and where that is so wanted none of the other keys? */
+static bool has_alternative(strut_fields *fields, const rule *self) {
+  char all[240], one[240];
+  snprintf(all, sizeof all, "%s", self->keys);
+  for (char *c = all; *c; c++) *c = *c == '+' ? '|' : *c;
+  const int mentions = count_mentioned(fields, all);
+  for (int i = 0; strut_word_at(self->keys, i, one, sizeof one); i++) {
+    for (char *c = one; *c; c++) *c = *c == '+' ? '|' : *c;
+    const int count = count_words(one);
+    if (count_mentioned(fields, one) == count && (self->kind != ONLY || mentions == count))
+      return true;
+  }
+  return false;
+}
+
+static void report_rule(strut_reader *reader, const strut_fields *fields, const rule *self,
+                        strut_place place, const strut_slot *given, const strut_slot *key) {
+  char text[600];
+  size_t used = 0;
+  for (const char *c = self->message; *c && used < sizeof text; c++) {
+    const bool insert = *c == '%';
+    if (insert) c++;
+    const char *part = !insert     ? (const char[]){*c, '\0'}
+                       : *c == 'o' ? strut_owner_text(reader, fields->owner)
+                       : *c == 'k' ? key->key->text
+                       : *c == 'g' ? given->key->text
+                                   : strut_sanitised_text(reader, given->value->text);
+    used += (size_t)snprintf(text + used, sizeof text - used, "%s", part);
+  }
+  strut_report_text(reader, place, self->message, text);
+}
+
+static bool check_rule(strut_reader *reader, strut_fields *fields, const rule *self) {
+  const int keys = count_words(self->given);
+  const strut_slot *given = NULL;
+  bool fine = true;
+  for (int i = 0; i < keys && !(given && given->state == STRUT_GIVEN); i++)
+    given = mentioned(fields, self->given, i);
+  if (keys && !(given && given->state == STRUT_GIVEN)) return true;
+  for (int i = 0; self->kind == FORBIDS && i < count_words(self->keys); i++) {
+    const strut_slot *key = mentioned(fields, self->keys, i);
+    if (!key || !key->key) continue;
+    report_rule(reader, fields, self, key->key->place, given, key);
+    fine = false;
+  }
+  if (self->kind == FORBIDS || fields->strange || reader->holes || has_alternative(fields, self))
+    return fine;
+  const strut_tree *whole = fields->key && !fields->outer ? fields->key : fields->map;
+  const strut_tree *at = self->kind == WANTS ? given->key : whole;
+  report_rule(reader, fields, self, at->place, given, NULL);
+  return false;
+}
+
+bool strut_check_rules(strut_reader *reader, strut_fields *fields) {
+  bool fine = check_companions(reader, fields);
+  for (const rule *r = rules; r < rules + sizeof rules / sizeof rules[0]; r++)
+    if (r->section == fields->section) fine = check_rule(reader, fields, r) && fine;
+  if (!fine) fields->broken = true;
+  return fine;
 }

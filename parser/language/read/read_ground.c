@@ -9,176 +9,153 @@
 #include "parser/language/read/reader.h"
 #include "parser/language/read/reuse/copies.h"
 
-/* The friction of one contact while the layers (ground, groups, contact) are laid over each other. */
+/*
+ * The friction of one contact while the layers (ground, groups, contact) are laid over each other: keys of all of
+ * them, `mu` and those of both directions in words of the other ones.
+ */
 typedef struct friction_layers {
-  strut_friction friction;
-  unsigned given;         /* one bit for each key that some layer gave */
-  bool any, broken;       /* there is a layer; one could not be read */
-  const strut_tree *last; /* the mapping of the top layer, */
-  strut_owner owner;      /* and what messages call it */
+  strut_fields keys;         /* called like the top layer, */
+  bool any, forward, broken; /* there is one; one has keys of a direction; one could not be read */
+  int32_t signal;            /* of mu, or -1 */
+  const strut_tree **reported; /* the layer whose lacks were reported last */
 } friction_layers;
 
-static unsigned key_bit(int key) {
-  return 1u << (key - strut_section_first(STRUT_SECTION_FRICTION));
+static strut_slot *slot_in(friction_layers *self, int key) {
+  return strut_slot_of(&self->keys, key);
 }
 
-static bool is_given(strut_fields *fields, int key, double *number) {
-  const strut_slot *slot = strut_slot_of(fields, key);
-  if (slot->state == STRUT_GIVEN) *number = slot->number[0];
-  return slot->state == STRUT_GIVEN;
-}
-
-/* What the slot of mu holds in number[1]: a number that was read, or from DRIVEN on a signal. */
+/* What the word of the slot of mu is: a number was read, or from DRIVEN on a signal. */
 enum { UNREAD, PLAIN, DRIVEN };
 
-/* `mu` of a layer, a number or a signal, read once although a group's holds for many contacts. */
-static bool read_mu(strut_reader *reader, strut_fields *fields, strut_friction *friction,
-                    double *mu) {
-  strut_slot *slot = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
-  if (slot->state != STRUT_GIVEN) return false;
-  bool signal = slot->value->kind == STRUT_TREE_MAP ||
-                (slot->value->kind == STRUT_TREE_SCALAR &&
-                 strut_name_map_find(&reader->signal_names, slot->value->text) >= 0);
-  if (slot->number[1] == UNREAD && signal) {
+/* `mu` of a layer, a number or a signal, read once although a group's holds for many contacts; NULL: none. */
+static const strut_slot *read_mu(strut_reader *reader, strut_fields *layer) {
+  strut_slot *slot = strut_slot_of(layer, STRUT_KEY_FRICTION_MU);
+  const strut_tree *mu = strut_given(layer, STRUT_KEY_FRICTION_MU);
+  if (mu && slot->word == UNREAD) {
     const strut_dimension plain = STRUT_DIM_NONE;
-    int32_t index = strut_read_signal(reader, slot->value, "mu", fields->owner, &plain);
-    slot->number[1] = index < 0 ? UNREAD : DRIVEN + index;
-  } else if (slot->number[1] == UNREAD) {
-    bool fine = strut_read_number(reader, slot->value, "mu", fields->owner, STRUT_DIM_NONE,
-                                  STRUT_WITHIN(NOT_NEGATIVE), &slot->number[0]);
-    slot->number[1] = fine ? PLAIN : UNREAD;
+    bool signal =
+        mu->kind == STRUT_TREE_MAP || (mu->kind == STRUT_TREE_SCALAR &&
+                                       strut_name_map_find(&reader->signal_names, mu->text) >= 0);
+    int32_t index = signal ? strut_read_signal(reader, mu, "mu", layer->owner, &plain) : -1;
+    slot->number[0] = 1.0;
+    bool fine = signal ? index >= 0
+                       : strut_read_number(reader, mu, "mu", layer->owner, plain,
+                                           STRUT_WITHIN(NOT_NEGATIVE), &slot->number[0]);
+    slot->word = signal ? DRIVEN + index : PLAIN;
+    if (!fine) slot->state = STRUT_BROKEN;
+    layer->broken = layer->broken || !fine;
   }
-  if (slot->number[1] == UNREAD) {
-    slot->state = STRUT_BROKEN;
-    fields->broken = true;
-    return false;
-  }
-  friction->driven = slot->number[1] >= DRIVEN;
-  friction->signal = friction->driven ? (int32_t)slot->number[1] - DRIVEN : 0;
-  *mu = friction->driven ? 1.0 : slot->number[0];
-  return true;
-}
-
-/* A layer gives a coefficient over a signal of those below, which leaves none of its own for the other. */
-static void stop_driving(friction_layers *self, strut_fields *fields) {
-  static const int keys[] = {STRUT_KEY_FRICTION_MU_STATIC, STRUT_KEY_FRICTION_MU_KINETIC};
-  for (size_t k = 0; k < sizeof keys / sizeof keys[0] && self->friction.driven; k++)
-    if (strut_slot_of(fields, keys[k])->state != STRUT_GIVEN) self->given &= ~key_bit(keys[k]);
-  self->friction.driven = false;
-  self->friction.signal = 0;
+  return slot->state == STRUT_GIVEN ? slot : NULL;
 }
 
 /*
- * Coefficients of a layer beside mu_static and mu_kinetic. Those without a direction replace both
- * directions of the layers below.
+ * Coefficients without a direction replace both directions of the layers below; a coefficient over a signal leaves
+ * none of its own for the other.
  */
-static void set_coefficients(strut_reader *reader, friction_layers *self, strut_fields *fields) {
-  strut_friction *all = &self->friction;
-  const unsigned directions =
-      key_bit(STRUT_KEY_FRICTION_MU_FORWARD) | key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
-      key_bit(STRUT_KEY_FRICTION_MU_BACKWARD) | key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
-  double mu;
-  bool both = read_mu(reader, fields, all, &mu);
-  if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
-      is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic)) {
-    all->directional = false, self->given &= ~directions;
-    if (!both) stop_driving(self, fields);
-    all->mu_static_backward = all->mu_kinetic_backward = 0.0;
+static void add_layer(strut_reader *reader, friction_layers *self, strut_fields *layer) {
+  strut_check_rules(reader, layer);
+  const strut_slot *mu = read_mu(reader, layer), *slots = layer->slot;
+  const strut_slot *forward = strut_slot_of(layer, STRUT_KEY_FRICTION_MU_FORWARD),
+                   *ahead = strut_slot_of(layer, STRUT_KEY_FRICTION_MU_FORWARD_STATIC),
+                   *back = strut_slot_of(layer, STRUT_KEY_FRICTION_MU_BACKWARD),
+                   *behind = strut_slot_of(layer, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
+  strut_slot *statics = slot_in(self, STRUT_KEY_FRICTION_MU_STATIC),
+             *kinetics = slot_in(self, STRUT_KEY_FRICTION_MU_KINETIC);
+  bool plain = mu || strut_given(layer, STRUT_KEY_FRICTION_MU_STATIC) ||
+               strut_given(layer, STRUT_KEY_FRICTION_MU_KINETIC);
+  bool both = mu || forward->state == STRUT_GIVEN;
+  if (plain) {
+    self->forward = false;
+    *slot_in(self, STRUT_KEY_FRICTION_MU_BACKWARD) = (strut_slot){0};
+    *slot_in(self, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC) = (strut_slot){0};
   }
-  if (!both && is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu)) {
-    stop_driving(self, fields);
-    both = true;
-  }
-  if (both) {
-    all->mu_static = all->mu_kinetic = mu;
-    self->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
-  }
-  is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD_STATIC, &all->mu_static);
-  if (is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD, &mu)) {
-    all->directional = true;
-    all->mu_static_backward = all->mu_kinetic_backward = mu;
-  }
-  is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC, &all->mu_static_backward);
-}
-
-static void add_layer(strut_reader *reader, friction_layers *self, strut_fields *fields) {
-  self->any = true;
-  self->last = fields->map;
-  self->owner = fields->owner;
-  if (fields->broken) self->broken = true;
-  strut_store(reader, fields, &self->friction);
+  if ((plain || both) && self->signal >= 0) *statics = *kinetics = (strut_slot){0};
+  if (plain || both) self->signal = mu && mu->word >= DRIVEN ? mu->word - DRIVEN : -1;
   for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
-    if (fields->slot[i].state == STRUT_GIVEN) self->given |= 1u << i;
-  set_coefficients(reader, self, fields);
-  self->broken = self->broken || fields->broken;
+    if (slots[i].state == STRUT_GIVEN && &slots[i] != mu && &slots[i] != forward &&
+        &slots[i] != ahead)
+      self->keys.slot[i] = slots[i];
+  if (both) *statics = *kinetics = mu ? *mu : *forward;
+  if (ahead->state == STRUT_GIVEN && statics->state == STRUT_GIVEN) *statics = *ahead;
+  if (back->state == STRUT_GIVEN && behind->state != STRUT_GIVEN)
+    *slot_in(self, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC) = *back;
+  self->forward = self->forward || forward->state == STRUT_GIVEN || ahead->state == STRUT_GIVEN ||
+                  behind->state == STRUT_GIVEN;
+  self->any = true;
+  self->keys.map = layer->map, self->keys.owner = layer->owner;
+  self->broken = self->broken || layer->broken;
 }
 
 /* Reports a key that the law needs and no layer gives, at the top layer. */
 static void report_lack(strut_reader *reader, const friction_layers *self, int key) {
   char expected[200];
   bool speed = strut_key_at(key)->measure == STRUT_MEASURE_VELOCITY;
-  strut_report_error(reader, self->last->place, "%s lacks '%s', expected %s%s",
-                     strut_owner_text(reader, self->owner), strut_key_at(key)->name,
+  if (*self->reported == self->keys.map) return;
+  strut_report_error(reader, self->keys.map->place, "%s lacks '%s', expected %s%s",
+                     strut_owner_text(reader, self->keys.owner), strut_key_at(key)->name,
                      speed ? strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected)
                            : "a number such as 0.5",
                      key == STRUT_KEY_FRICTION_STICK_VELOCITY ? "; 'law: coulomb' has none" : "");
 }
 
-/* Reports static friction below kinetic friction, once for each top layer. False: there is some. */
+/* Reports static friction below kinetic friction. False: there is some. */
 static bool check_static_friction(strut_reader *reader, const friction_layers *self,
-                                  const strut_tree **reported) {
-  int way = strut_friction_holds_too_little(&self->friction);
-  if (way == 0) return true;
-  if (*reported != self->last)
+                                  const strut_friction *friction) {
+  int way = strut_friction_holds_too_little(friction);
+  if (way != 0 && *self->reported != self->keys.map)
     strut_report_error(
-        reader, self->last->place,
+        reader, self->keys.map->place,
         "%s has static friction %g below kinetic friction %g, expected at least as much: a "
         "contact that gives way would be held again at once",
-        strut_owner_text(reader, self->owner), strut_friction_static(&self->friction, way),
-        strut_friction_kinetic(&self->friction, way));
-  *reported = self->last;
-  return false;
+        strut_owner_text(reader, self->keys.owner), strut_friction_static(friction, way),
+        strut_friction_kinetic(friction, way));
+  return way == 0;
 }
 
 /*
  * Are all numbers given that the friction law needs? What is missing is reported once for each top layer;
  * where no coefficient is given, as one lacking key, mu.
  */
-static bool complete_friction(strut_reader *reader, friction_layers *self,
-                              const strut_tree **reported) {
-  if (!self->any || self->broken) return !self->broken;
-  if (!(self->given & key_bit(STRUT_KEY_FRICTION_LAW))) self->friction.law = STRUT_FRICTION_KARNOPP;
-  bool statics = self->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
-  bool kinetics = self->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
-  bool complete = true, reported_mu = false;
+static bool has_all(strut_reader *reader, friction_layers *self, strut_friction_law law) {
+  const strut_slot *statics = slot_in(self, STRUT_KEY_FRICTION_MU_STATIC),
+                   *kinetics = slot_in(self, STRUT_KEY_FRICTION_MU_KINETIC);
+  bool none = statics->state != STRUT_GIVEN && kinetics->state != STRUT_GIVEN;
+  bool complete = true, lacks_mu = false;
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
     int key = strut_key_find(STRUT_SECTION_FRICTION, strut_friction_key(p));
-    if (!strut_friction_needs(self->friction.law, p) || (self->given & key_bit(key))) continue;
-    complete = false;
-    bool both = !statics && !kinetics &&
-                (key == STRUT_KEY_FRICTION_MU_STATIC || key == STRUT_KEY_FRICTION_MU_KINETIC);
-    if (*reported != self->last && !(both && reported_mu))
-      report_lack(reader, self, both ? STRUT_KEY_FRICTION_MU : key);
-    reported_mu = reported_mu || both;
-  }
-  bool forward = self->given & (key_bit(STRUT_KEY_FRICTION_MU_FORWARD) |
-                                key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
-                                key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC));
-  if (forward && !self->friction.directional) {
-    if (*reported != self->last) report_lack(reader, self, STRUT_KEY_FRICTION_MU_BACKWARD);
+    const strut_slot *slot = slot_in(self, key);
+    if (!strut_friction_needs(law, p) || slot->state == STRUT_GIVEN) continue;
+    bool both = none && (slot == statics || slot == kinetics);
+    if (!(both && lacks_mu)) report_lack(reader, self, both ? STRUT_KEY_FRICTION_MU : key);
+    lacks_mu = lacks_mu || both;
     complete = false;
   }
-  if (!complete) *reported = self->last;
-  return complete && check_static_friction(reader, self, reported);
+  if (!self->forward || strut_given(&self->keys, STRUT_KEY_FRICTION_MU_BACKWARD)) return complete;
+  report_lack(reader, self, STRUT_KEY_FRICTION_MU_BACKWARD);
+  return false;
+}
+
+/* The friction that the layers make. False: that was reported. */
+static bool make_friction(strut_reader *reader, friction_layers *self, strut_friction *friction) {
+  *friction = (strut_friction){0};
+  if (!self->any || self->broken) return !self->broken;
+  strut_store(reader, &self->keys, friction);
+  if (!strut_given(&self->keys, STRUT_KEY_FRICTION_LAW)) friction->law = STRUT_FRICTION_KARNOPP;
+  friction->directional = strut_given(&self->keys, STRUT_KEY_FRICTION_MU_BACKWARD);
+  friction->driven = self->signal >= 0;
+  friction->signal = friction->driven ? self->signal : 0;
+  bool fine = has_all(reader, self, friction->law) && check_static_friction(reader, self, friction);
+  if (!fine) *self->reported = self->keys.map;
+  return fine;
 }
 
 /* The defaults of all contacts: those of the ground. */
 typedef struct ground_defaults {
   strut_contact contact;
   friction_layers friction;
-  bool broken;
-  const strut_tree *reported; /* the layer of friction whose lacks were reported last */
-  double along[2];            /* the direction of a line, along which forward is; else that of x */
+  bool broken, made; /* made: that of contacts without keys of their own, which is `contact`'s */
+  const strut_tree *reported;
+  double along[2]; /* the direction of a line, along which forward is; else that of x */
 } ground_defaults;
 
 /* Lays the friction of the contact's groups, then its own, over the ground's. */
@@ -219,24 +196,31 @@ static bool turn_friction(strut_reader *reader, const strut_tree *key, const dou
   return true;
 }
 
-static void read_contact(strut_reader *reader, const strut_tree *key, ground_defaults *defaults,
-                         strut_contact *contact, strut_source *source) {
+/* A contact with keys of its own. False: some are wrong. */
+static bool read_own_keys(strut_reader *reader, const strut_tree *key, ground_defaults *defaults,
+                          strut_contact *contact) {
   friction_layers layers = defaults->friction;
   strut_owner owner = {"contact", reader->scene->nodes[contact->node].name};
-  bool fine = !defaults->broken;
-  if (key) {
-    strut_fields fields;
-    strut_enter_scope(reader, key);
-    strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
-    strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP);
-    strut_store(reader, &fields, contact);
-    own_friction(reader, &fields, &layers);
-    fine = turn_friction(reader, key, defaults->along, &layers.friction) && fine && !fields.broken;
-  }
-  if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
+  strut_fields fields;
+  strut_enter_scope(reader, key);
+  strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
+  strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP);
+  strut_store(reader, &fields, contact);
+  own_friction(reader, &fields, &layers);
+  bool fine = make_friction(reader, &layers, &contact->friction);
+  fine = turn_friction(reader, key, defaults->along, &contact->friction) && fine;
   reader->scope = NULL;
-  contact->friction = layers.friction;
-  *source = (strut_source){key, key ? key->next : NULL, !fine};
+  return fine && !fields.broken;
+}
+
+static bool read_contact(strut_reader *reader, const strut_tree *key, ground_defaults *defaults,
+                         strut_contact *contact) {
+  if (key) return read_own_keys(reader, key, defaults, contact) && !defaults->broken;
+  if (!defaults->made && !make_friction(reader, &defaults->friction, &defaults->contact.friction))
+    defaults->broken = true;
+  defaults->made = true;
+  contact->friction = defaults->contact.friction;
+  return !defaults->broken;
 }
 
 /* A node that is moved cannot touch; `all` leaves it out. */
@@ -330,8 +314,7 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, const unsig
 static bool add_copied(strut_reader *reader, unsigned char *touches, const strut_tree **entry) {
   bool fine = true;
   const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     strut_owner owner = {"part", reader->scope ? reader->scope->placement->part->name : NULL};
     strut_tree name = *key;
     name.text = strut_local_name(reader, key->text);
@@ -393,7 +376,8 @@ static void read_contacts(strut_reader *reader, strut_fields *fields, ground_def
     size_t c = list->count++;
     list->contact[c] = defaults->contact;
     list->contact[c].node = (int32_t)i;
-    read_contact(reader, entry[i], defaults, &list->contact[c], &list->source[c]);
+    bool fine = read_contact(reader, entry[i], defaults, &list->contact[c]);
+    list->source[c] = (strut_source){entry[i], entry[i] ? entry[i]->next : NULL, !fine};
     for (size_t piece = 1; piece < pieces; piece++) {
       size_t more = list->count++;
       list->contact[more] = list->contact[c];
@@ -403,37 +387,21 @@ static void read_contacts(strut_reader *reader, strut_fields *fields, ground_def
   }
 }
 
-static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
-                                     const strut_contact *contact) {
-  ground_defaults defaults = {.contact = *contact, .broken = fields->broken};
-  const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
-  if (friction->state != STRUT_GIVEN) return defaults;
-  strut_fields nested;
-  char text[200];
-  snprintf(text, sizeof text, "the friction of %.150s", strut_owner_text(reader, fields->owner));
-  strut_owner mine = {strut_keep_text(reader, text), NULL};
-  strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
-  add_layer(reader, &defaults.friction, &nested);
-  return defaults;
+/* Those of contacts are set. */
+static void read_friction(strut_reader *reader, strut_fields *fields, ground_defaults *defaults) {
+  const strut_tree *friction = strut_given(fields, STRUT_KEY_GROUND_FRICTION);
+  strut_fields layer;
+  defaults->friction =
+      (friction_layers){.keys = {.section = STRUT_SECTION_FRICTION, .map = fields->map},
+                        .signal = -1,
+                        .reported = &defaults->reported};
+  if (!friction) return;
+  strut_owner owner = strut_owner_within(reader, "friction", fields->owner);
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, friction, owner, &layer);
+  add_layer(reader, &defaults->friction, &layer);
 }
 
 /* ---- shape and motion ---- */
-
-/* Keys of a line beside those of another shape. */
-static bool shape_is_alone(strut_reader *reader, strut_fields *fields) {
-  static const int of_lines[] = {STRUT_KEY_GROUND_HEIGHT, STRUT_KEY_GROUND_SLOPE,
-                                 STRUT_KEY_GROUND_THROUGH, STRUT_KEY_GROUND_NORMAL};
-  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
-  const strut_slot *shape = profile->key ? profile : strut_slot_of(fields, STRUT_KEY_GROUND_CIRCLE);
-  for (size_t i = 0; shape->key && i < sizeof of_lines / sizeof of_lines[0]; i++) {
-    const strut_slot *slot = strut_slot_of(fields, of_lines[i]);
-    if (!slot->key) continue;
-    return strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
-                              strut_owner_text(reader, fields->owner), shape->key->text,
-                              slot->key->text);
-  }
-  return true;
-}
 
 /* The slope of a line by its normal vector. */
 static bool read_normal(strut_reader *reader, strut_fields *fields, strut_ground_section *section) {
@@ -518,29 +486,19 @@ static void check_belt(strut_reader *reader, const strut_slot *belt, const conta
                        "'belt_speed' has no meaning without 'friction' of a contact");
 }
 
-/* A plain number above 45 deg is in radians, and probably meant in degrees. */
-static void note_steep(strut_reader *reader, const strut_slot *slope) {
-  if (slope->state != STRUT_GIVEN || !(fabs(slope->number[0]) > STRUT_TAU / 8)) return;
-  const char *text = slope->value->text;
-  if (strut_number_scan(text, strlen(text)) == strlen(text))
-    strut_note(reader->diagnostics, slope->value->place,
-               "a slope of %s is in radians, %.6g deg; write '%s deg' if that is meant", text,
-               slope->number[0] * 360.0 / STRUT_TAU, text);
-}
-
 static void read_one(strut_reader *reader, strut_fields *fields, strut_place place,
                      strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, place);
   strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
-  if (!strut_store(reader, fields, &section) || !shape_is_alone(reader, fields) ||
-      !read_normal(reader, fields, &section))
+  if (!strut_store(reader, fields, &section) || !read_normal(reader, fields, &section))
     fields->broken = true;
-  note_steep(reader, strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE));
   *ground = section.ground;
-  ground_defaults defaults = read_defaults(reader, fields, &section.contact);
   bool line = ground->shape == STRUT_GROUND_LINE;
-  defaults.along[0] = line ? cos(ground->slope) : 1.0;
-  defaults.along[1] = line ? sin(ground->slope) : 0.0;
+  ground_defaults defaults = {
+      .contact = section.contact,
+      .broken = fields->broken,
+      .along = {line ? cos(ground->slope) : 1.0, line ? sin(ground->slope) : 0.0}};
+  read_friction(reader, fields, &defaults);
   if (strut_entries(reader, STRUT_KEY_SCENE_NODES))
     read_contacts(reader, fields, &defaults, pieces_of(ground), list);
   else

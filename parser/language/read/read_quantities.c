@@ -98,15 +98,10 @@ static const char *field_name(const void *context, size_t i) {
   return NULL;
 }
 
-static size_t field_count(unsigned owners) {
-  size_t count = 0;
-  while (field_name(&owners, count)) count++;
-  return count;
-}
-
 /* "x, y or vx" */
 static const char *field_list(unsigned owners, char *text, size_t size) {
-  size_t count = field_count(owners), used = 0;
+  size_t count = 0, used = 0;
+  while (field_name(&owners, count)) count++;
   text[0] = '\0';
   for (size_t i = 0; i < count && used < size; i++)
     used += (size_t)snprintf(text + used, size - used, "%s%s",
@@ -121,14 +116,11 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
                         strut_refusal *refusal) {
   if (!all_known(reader)) return -1;
   const char *name = strut_piece_text(reader, owner);
-  size_t count = 0;
-  while (group_at(count)) count++;
-  for (size_t k = 0; k < KIND_COUNT; k++) count += strut_thing_count(reader->scene, kinds[k]);
   snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.40s'%s",
            kind                         ? kind
            : reader->scene->hinge_count ? "node, member or hinge"
                                         : "node or member",
-           name, strut_hint(reader, name, owner_name, reader, count));
+           name, strut_hint(reader, name, owner_name, reader));
   return -1;
 }
 
@@ -136,8 +128,8 @@ static int refuse_field(strut_reader *reader, const found_owner *found, strut_pi
                         strut_piece field, strut_refusal *refusal) {
   char list[200];
   bool thing = found->thing;
-  const char *hint = strut_hint(reader, strut_piece_text(reader, field), field_name, &found->owners,
-                                field_count(found->owners));
+  const char *hint =
+      strut_hint(reader, strut_piece_text(reader, field), field_name, &found->owners);
   snprintf(refusal->text, sizeof refusal->text, "%s%s%.40s%s has no column '%.40s'%s%s%s",
            found->what, thing ? " '" : "", thing ? strut_piece_text(reader, owner) : "",
            thing ? "'" : "", strut_piece_text(reader, field), hint, *hint ? "" : ", expected ",

@@ -480,8 +480,11 @@ static bool node_place(strut_reader *reader, const strut_finding *finding, strut
   if ((mass || !finding->key) && reader->ends_unknown) return false;
   if (mass && reader->masses_unknown) return false;
   if (!velocity) return thing_place(reader, source, finding->key, place);
-  const strut_tree *own = reader->velocity_source ? reader->velocity_source[finding->index] : NULL;
-  *place = own ? own->place : source->key->place;
+  const strut_tree *map = strut_given(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
+  *place = source->key->place;
+  for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next)
+    if (strcmp(key->text, reader->scene->nodes[finding->index].name) == 0)
+      *place = key->next->place;
   return true;
 }
 

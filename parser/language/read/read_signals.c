@@ -73,9 +73,7 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
   if (!time || !value) return false;
   for (const strut_tree *point = list->first; point; point = point->next) {
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      fine = strut_report_error(reader, point->place,
-                                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
-                                strut_owner_text(reader, owner), strut_found(reader, point));
+      fine = strut_refuse_value(reader, point, "table", owner, "a point such as [0.1 s, 2]");
       continue;
     }
     size_t i = signal->point_count++;
@@ -153,19 +151,8 @@ bool strut_read_trigger(strut_reader *reader, strut_fields *fields, void *object
   strut_trigger *trigger = object;
   int key =
       strut_given(fields, STRUT_KEY_STARTS_ABOVE) ? STRUT_KEY_STARTS_ABOVE : STRUT_KEY_STARTS_BELOW;
-  bool level = strut_given(fields, key), sensed = strut_given(fields, STRUT_KEY_STARTS_SENSOR);
-  if (fields->broken) return false;
-  if (!sensed && !strut_given(fields, STRUT_KEY_STARTS_CONTACT))
-    return strut_report_error(
-        reader, fields->map->place,
-        "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}",
-        fields->owner.kind);
-  if (sensed != level)
-    return strut_report_error(reader, fields->map->place,
-                              sensed ? "%s needs a level, 'above' or 'below', of its sensor"
-                                     : "%s gives a level, which only a sensor passes",
-                              fields->owner.kind);
-  if (!sensed || trigger->item < 0) return trigger->item >= 0;
+  if (fields->broken || trigger->item < 0) return false;
+  if (!strut_given(fields, STRUT_KEY_STARTS_SENSOR)) return true;
   strut_dimension dimension = strut_sensor_dimension(&reader->scene->sensors[trigger->item]);
   return strut_store_number(reader, fields, key, dimension, trigger);
 }
@@ -180,9 +167,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
   int chosen = STRUT_DATA; /* a relay is a controller */
   while (chosen >= 0 && fields.slot[chosen].state != STRUT_GIVEN) chosen--;
-  if (chosen < 0 && !fields.broken)
-    strut_report_error(reader, map->place, "expected a kind of signal for %s",
-                       strut_owner_text(reader, owner));
+  if (chosen < 0) strut_check_rules(reader, &fields);
   if (chosen < 0 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
@@ -290,8 +275,7 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
   if (!strut_read_scalar(reader, value, key, owner, "a signal or the name of one")) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SIGNALS)->state == STRUT_BROKEN) return -1;
   const strut_namespace names = {"signal", &reader->signal_names, strut_row_name,
-                                 STRUT_NAMED(reader->named, reader->named_count),
-                                 reader->named_count};
+                                 STRUT_NAMED(reader->named, reader->named_count)};
   int32_t i = strut_read_name_of(reader, value, key, owner, &names);
   if (i < 0) return -1;
   int32_t index = read_named(reader, &reader->named[i]);
@@ -311,10 +295,8 @@ int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension
 
 int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                           strut_owner owner, const strut_dimension *expected) {
-  char text[200];
-  snprintf(text, sizeof text, "the signal of %.150s", strut_owner_text(reader, owner));
-  strut_owner within = value->kind == STRUT_TREE_MAP ? (strut_owner){text, NULL} : owner;
-  return read_signal(reader, value, key, within, expected);
+  if (value->kind == STRUT_TREE_MAP) owner = strut_owner_within(reader, "signal", owner);
+  return read_signal(reader, value, key, owner, expected);
 }
 
 void strut_list_signal(strut_reader *reader, const strut_tree *key, bool controller) {
@@ -370,83 +352,37 @@ void strut_keep_signals(strut_reader *reader) {
 
 /* ---- actuators and loads ---- */
 
-/* The signal of an actuator: what it adds to a rest length or angle, or a force, or a moment. */
-static bool read_drive(strut_reader *reader, strut_fields *fields, bool hinge, bool cell,
-                       bool known, strut_actuator *actuator) {
+/* What it drives decides what its signal measures: what it adds to a rest length or angle, or a force, or a moment. */
+bool strut_read_actuator(strut_reader *reader, strut_fields *fields, void *object) {
   static const int keys[] = {STRUT_KEY_ACTUATOR_SIGNAL, STRUT_KEY_ACTUATOR_FORCE,
                              STRUT_KEY_ACTUATOR_MOMENT};
+  strut_actuator *actuator = object;
+  bool hinge = strut_mentions(fields, STRUT_KEY_ACTUATOR_HINGE),
+       cell = strut_mentions(fields, STRUT_KEY_ACTUATOR_CELL);
   const strut_dimension dimensions[] = {hinge  ? STRUT_DIM_ANGLE
                                         : cell ? STRUT_DIM_STIFFNESS
                                                : STRUT_DIM_LENGTH,
                                         STRUT_DIM_FORCE, STRUT_DIM_MOMENT};
-  int k = 0;
-  while (k < 3 && !strut_mentions(fields, keys[k])) k++;
-  if (k == 3)
-    return !fields->broken &&
-           strut_report_error(
-               reader, fields->key->place,
-               "%s lacks 'signal', expected a signal such as {sine: {amplitude: 1 mm, frequency: "
-               "10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
-               strut_owner_text(reader, fields->owner));
-  const strut_slot *slot = strut_slot_of(fields, keys[k]);
-  if (known && slot->key && k > 0 && cell)
-    return strut_report_error(reader, slot->key->place,
-                              "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
-                              strut_owner_text(reader, fields->owner), strut_key_at(keys[k])->name);
-  if (known && slot->key && k > 0 && hinge != (k == 2))
-    return strut_report_error(reader, slot->key->place,
-                              hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
-                                    : "%s gives a 'moment' to a member, which takes a 'force'",
-                              strut_owner_text(reader, fields->owner));
-  actuator->force = (uint32_t)k;
-  reader->signal_quantity = k == 2 ? "moment" : known && cell ? "pressure" : NULL;
-  if (slot->state == STRUT_GIVEN)
-    actuator->signal = strut_read_signal(reader, slot->value, strut_key_at(keys[k])->name,
-                                         fields->owner, known || k > 0 ? &dimensions[k] : NULL);
+  uint32_t k = 0;
+  while (k < 2 && !strut_mentions(fields, keys[k])) k++;
+  const strut_tree *signal = fields->broken ? NULL : strut_given(fields, keys[k]);
+  actuator->force = k;
+  reader->signal_quantity = k == 2 ? "moment" : cell ? "pressure" : NULL;
+  if (signal)
+    actuator->signal = strut_read_signal(reader, signal, strut_key_at(keys[k])->name, fields->owner,
+                                         &dimensions[k]);
   reader->signal_quantity = NULL;
-  return actuator->signal >= 0;
-}
-
-bool strut_read_actuator(strut_reader *reader, strut_fields *fields, void *object) {
-  strut_actuator *actuator = object;
-  bool hinge = strut_slot_of(fields, STRUT_KEY_ACTUATOR_HINGE)->key,
-       cell = strut_slot_of(fields, STRUT_KEY_ACTUATOR_CELL)->key;
-  bool driven = strut_mentions(fields, STRUT_KEY_ACTUATOR_MEMBER) ||
-                strut_mentions(fields, STRUT_KEY_ACTUATOR_HINGE) ||
-                strut_mentions(fields, STRUT_KEY_ACTUATOR_CELL);
-  bool fine = driven || fields->broken ||
-              strut_report_error(reader, fields->key->place,
-                                 "%s lacks 'member', expected the name of a member, or 'hinge' "
-                                 "with the name of a hinge",
-                                 strut_owner_text(reader, fields->owner));
-  /* what it drives decides what the signal measures */
-  fine = read_drive(reader, fields, hinge, cell, driven, actuator) && fine;
-  return fine && (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0);
+  return actuator->signal >= 0 &&
+         (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0);
 }
 
 bool strut_read_load(strut_reader *reader, strut_fields *fields, void *object) {
   strut_load *load = object;
-  const strut_slot *node = strut_slot_of(fields, STRUT_KEY_LOAD_NODE);
   const strut_slot *force = strut_slot_of(fields, STRUT_KEY_LOAD_FORCE);
-  const strut_slot *moment = strut_slot_of(fields, STRUT_KEY_LOAD_MOMENT);
-  bool turns = strut_slot_of(fields, STRUT_KEY_LOAD_HINGE)->key ||
-               strut_slot_of(fields, STRUT_KEY_LOAD_MEMBER)->key;
-  const strut_slot *odd = turns ? force : moment, *due = turns ? moment : force;
-  const char *wrong =
-      !node->key && !turns
-          ? "lacks 'node', expected the name of a node, or 'hinge' or 'member' for a moment"
-      : odd->key && turns  ? "gives a 'force' to a hinge or member, which takes a 'moment'"
-      : odd->key           ? "gives a 'moment' to a node, which takes a 'force'"
-      : !due->key && turns ? "lacks 'moment', expected a moment such as '2 N m'"
-      : !due->key          ? "lacks 'force', expected two numbers such as [10 N, 0]"
-                           : NULL;
-  if (wrong && !fields->broken)
-    strut_report_error(reader, *wrong == 'g' ? odd->key->place : fields->key->place, "%s %s",
-                       strut_owner_text(reader, fields->owner), wrong);
   if (force->key) strut_place_vector(reader, force->value, load->force);
   /* the nodes of a hinge in a mirrored copy change places instead */
   if (strut_scope_flips(reader) && load->member >= 0) load->moment = -load->moment;
-  return !wrong;
+  return true;
 }
 
 /* ---- unbalances ---- */
@@ -486,12 +422,6 @@ bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, void *obje
   const strut_slot *signal = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SIGNAL);
   const strut_tree *speed = strut_given(fields, STRUT_KEY_UNBALANCE_SPEED);
   bool fine = !speed || read_speed(reader, speed, fields->owner, &unbalance->speed);
-  if (!strut_mentions(fields, STRUT_KEY_UNBALANCE_SPEED) && signal->state == STRUT_ABSENT &&
-      !fields->broken)
-    fine = strut_report_error(
-        reader, fields->key->place,
-        "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
-        strut_owner_text(reader, fields->owner));
   turn_unbalance(reader, signal, unbalance);
   return fine;
 }

@@ -140,7 +140,7 @@ static bool is_named_twice(strut_reader *reader, const strut_tree *map, const st
 }
 
 bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
-                           strut_dimension dimension, strut_pair_taker *take) {
+                           strut_dimension dimension, void *pairs, size_t stride) {
   bool fine = true;
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
   for (const strut_tree *tree = map->first; tree; tree = tree->next->next) {
@@ -154,12 +154,10 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
     bool measured = length && tree->next->kind == STRUT_TREE_MAP;
     bool read = measured ? strut_read_data_point(reader, tree->next, owner, pair)
                          : strut_read_pair(reader, tree->next, tree->text, owner, dimension, pair);
-    if (!read || node < 0 || is_named_twice(reader, map, tree, node))
-      fine = false;
-    else if (take) {
-      if (length) strut_place_point(reader, tree->next, pair);
-      take(reader, node, pair, tree->next);
-    }
+    fine = read && node >= 0 && !is_named_twice(reader, map, tree, node) && fine;
+    if (!read || node < 0) continue;
+    if (length) strut_place_point(reader, tree->next, pair);
+    memcpy((char *)pairs + (size_t)node * stride, pair, sizeof pair);
   }
   return fine;
 }
@@ -210,9 +208,7 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
   for (const strut_tree *point = fine ? list->first : NULL; point; point = point->next) {
     size_t i = law->count++;
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      fine = strut_report_error(reader, point->place,
-                                "expected a point such as [2 mm, 3 N] for '%s' of %s, found %s",
-                                key, strut_owner_text(reader, owner), strut_found(reader, point));
+      fine = strut_refuse_value(reader, point, key, owner, "a point such as [2 mm, 3 N]");
       continue;
     }
     fine = strut_read_number(reader, point->first, key, owner, strain, STRUT_WITHIN(ANY), &x[i]) &&
@@ -235,9 +231,6 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
 static bool check_needs(strut_reader *reader, strut_fields *fields, const strut_law *law) {
   const char *kind = strut_law_at(law->kind)->word, *text = strut_owner_text(reader, fields->owner);
   bool fine = true, data = strut_mentions(fields, STRUT_KEY_LAW_DATA);
-  if (data && !strut_mentions(fields, STRUT_KEY_LAW_OVER))
-    fine = strut_report_error(reader, fields->map->place,
-                              "%s lacks 'over', expected the column of x, such as tensile.x", text);
   for (int p = 0; p < STRUT_LAW_PARAMETER_COUNT; p++) {
     const char *name = strut_law_parameter_at(p)->key;
     int key = strut_key_find(STRUT_SECTION_LAW, name);
@@ -283,9 +276,7 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   if (slot->state == STRUT_ABSENT) return true;
   if (slot->state != STRUT_GIVEN) return false;
   if (slot->value->kind == STRUT_TREE_SCALAR) return read_word(reader, slot->value, owner, law);
-  char text[200];
-  snprintf(text, sizeof text, "the law of %.150s", strut_owner_text(reader, owner));
-  strut_owner within = {text, NULL};
+  strut_owner within = strut_owner_within(reader, "law", owner);
   strut_read_fields(reader, STRUT_SECTION_LAW, slot->value, within, &fields);
   const strut_tree *coefficients = strut_given(&fields, STRUT_KEY_LAW_COEFFICIENTS),
                    *data = strut_given(&fields, STRUT_KEY_LAW_DATA);
@@ -348,77 +339,29 @@ void strut_read_lattice(strut_reader *reader) {
 
 bool strut_read_hinge(strut_reader *reader, strut_fields *fields, void *object) {
   strut_hinge *hinge = object;
+  (void)fields;
   if (strut_scope_flips(reader)) { /* counter-clockwise is the other way round */
     int32_t first = hinge->node[0];
     hinge->node[0] = hinge->node[2], hinge->node[2] = first;
   }
-  if (fields->broken) reader->ends_unknown = true;
   return true;
 }
 
 bool strut_read_cell(strut_reader *reader, strut_fields *fields, void *object) {
-  static const int own[] = {STRUT_KEY_CELL_STIFFNESS, STRUT_KEY_CELL_LAW, STRUT_KEY_CELL_DAMPING,
-                            STRUT_KEY_CELL_REST_AREA};
   const strut_slot *gas = strut_slot_of(fields, STRUT_KEY_CELL_GAS);
   strut_cell *cell = object;
-  const char *other = gas->state != STRUT_ABSENT                        ? "gas"
-                      : strut_mentions(fields, STRUT_KEY_CELL_PRESSURE) ? "pressure"
-                                                                        : NULL;
-  for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) {
-    const strut_tree *elastic = strut_slot_of(fields, own[k])->key;
-    if (!elastic) continue;
+  if (gas->state == STRUT_ABSENT && !strut_mentions(fields, STRUT_KEY_CELL_PRESSURE))
     cell->law = STRUT_LAW_LINEAR;
-    return !other ||
-           strut_report_error(
-               reader, elastic->place,
-               "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
-               strut_owner_text(reader, fields->owner), elastic->text, other);
-  }
-  if (gas->state == STRUT_GIVEN)
-    return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), fields, object,
-                             sizeof(strut_cell));
-  return other || fields->broken ||
-         strut_report_error(
-             reader, fields->key->place,
-             "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
-             "'stiffness' of its area",
-             strut_owner_text(reader, fields->owner));
-}
-
-bool strut_read_collision(strut_reader *reader, strut_fields *fields, void *object) {
-  const strut_slot *node = strut_slot_of(fields, STRUT_KEY_COLLISION_NODE);
-  bool pair = strut_mentions(fields, STRUT_KEY_COLLISION_NODES) ||
-              strut_mentions(fields, STRUT_KEY_COLLISION_MEMBERS) ||
-              strut_mentions(fields, STRUT_KEY_COLLISION_BETWEEN);
-  bool alone = node->state != STRUT_ABSENT;
-  bool member = strut_mentions(fields, STRUT_KEY_COLLISION_MEMBER);
-  (void)object;
-  fields->unresolved = fields->unresolved || fields->broken;
-  if (fields->broken || (pair && !alone) || (member && alone && !pair)) return true;
-  fields->unresolved = true;
-  return strut_report_error(
-      reader, alone && pair ? node->key->place : fields->key->place,
-      "%s %s, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' with two "
-      "members, or 'between'",
-      strut_owner_text(reader, fields->owner),
-      alone && pair ? "names a node beside a pair" : "does not name two things");
+  return gas->state != STRUT_GIVEN || strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS),
+                                                        fields, object, sizeof(strut_cell));
 }
 
 bool strut_read_distance(strut_reader *reader, strut_fields *fields, void *object) {
   strut_distance_spring *spring = object;
-  bool along = strut_mentions(fields, STRUT_KEY_DISTANCE_ALONG);
-  bool pair = strut_mentions(fields, STRUT_KEY_DISTANCE_NODES);
-  bool node = strut_mentions(fields, STRUT_KEY_DISTANCE_NODE);
-  bool line = strut_mentions(fields, STRUT_KEY_DISTANCE_LINE);
+  (void)fields;
   if (strut_scope_flips(reader)) { /* left is the other side */
     int32_t first = spring->line[0];
     spring->line[0] = spring->line[1], spring->line[1] = first;
   }
-  fields->unresolved = fields->unresolved || fields->broken;
-  if (fields->broken || (pair && along && !node && !line) || (node && line && !pair && !along))
-    return true;
-  fields->unresolved = true;
-  return strut_report_error(reader, fields->key->place,
-                            "%s must have 'nodes' and 'along', or 'node' and 'line'",
-                            strut_owner_text(reader, fields->owner));
+  return true;
 }

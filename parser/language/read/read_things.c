@@ -15,6 +15,7 @@ typedef struct kind {
   strut_section section; /* of its things; not used with `read` */
   int group;             /* the key that names groups, or -1 */
   bool joins;    /* it uses nodes: where it names unknown ones, others are not reported as unused */
+  bool chooses;  /* and says which in several ways, so that it may be a fault of any of its keys */
   bool heavy;    /* it may have mass */
   bool variable; /* expressions use its name */
   strut_thing_reader *read;
@@ -25,11 +26,12 @@ static const kind kinds[STRUT_THING_COUNT] = {
     [STRUT_THING_MEMBER] = {STRUT_KEY_SCENE_MEMBERS, STRUT_SECTION_MEMBER, STRUT_KEY_MEMBER_GROUP,
                             .joins = true},
     [STRUT_THING_HINGE] = {STRUT_KEY_SCENE_HINGES, STRUT_SECTION_HINGE, STRUT_KEY_HINGE_GROUP,
-                           .joins = true},
+                           .joins = true, .chooses = true},
     [STRUT_THING_CELL] = {STRUT_KEY_SCENE_CELLS, STRUT_SECTION_CELL, -1, .joins = true},
     [STRUT_THING_COLLISION] = {STRUT_KEY_SCENE_COLLISIONS, STRUT_SECTION_COLLISION, -1,
-                               .joins = true},
-    [STRUT_THING_DISTANCE] = {STRUT_KEY_SCENE_DISTANCES, STRUT_SECTION_DISTANCE, -1, .joins = true},
+                               .joins = true, .chooses = true},
+    [STRUT_THING_DISTANCE] = {STRUT_KEY_SCENE_DISTANCES, STRUT_SECTION_DISTANCE, -1, .joins = true,
+                              .chooses = true},
     [STRUT_THING_FOOT] = {STRUT_KEY_SCENE_FEET, STRUT_SECTION_FOOT, -1},
     [STRUT_THING_ACTUATOR] = {STRUT_KEY_SCENE_ACTUATORS, STRUT_SECTION_ACTUATOR, -1},
     [STRUT_THING_LOAD] = {STRUT_KEY_SCENE_LOADS, STRUT_SECTION_LOAD, -1, .joins = true},
@@ -60,14 +62,14 @@ static const char *thing_name(const void *context, size_t i) {
 
 const char *strut_hint_of_things(strut_reader *reader, const char *word, strut_thing thing) {
   const things_context context = {reader->scene, thing};
-  return strut_hint(reader, word, thing_name, &context, strut_thing_count(reader->scene, thing));
+  return strut_hint(reader, word, thing_name, &context);
 }
 
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
                              strut_owner owner, strut_thing thing) {
   const things_context context = {reader->scene, thing};
   const strut_namespace names = {strut_thing_at(thing)->word, &reader->things[thing].names,
-                                 thing_name, &context, strut_thing_count(reader->scene, thing)};
+                                 thing_name, &context};
   if (strut_slot_of(&reader->top, kinds[thing].key)->state == STRUT_BROKEN) return -1;
   return strut_read_name_of(reader, value, key, owner, &names);
 }
@@ -87,6 +89,7 @@ static bool read_thing(strut_reader *reader, strut_thing thing, const strut_tree
   if (self->group >= 0) strut_apply_groups(reader, &fields, self->group);
   strut_require(reader, &fields, key->place);
   fine = strut_store_fields(reader, &fields, object, row->size) && fine && !fields.broken;
+  if (self->chooses && fields.broken) fields.unresolved = true;
   if (fields.unresolved && self->joins) reader->ends_unknown = true;
   if (!fine && self->heavy) reader->masses_unknown = true;
   return fine && !fields.unresolved;
@@ -133,8 +136,7 @@ void strut_read_things(strut_reader *reader, strut_thing thing) {
   size_t most = (map ? map->count : 0) + (of_pipes ? strut_pipes_most(reader) : 0);
   if (!most || !strut_reserve_things(reader, thing, most) || !map) return;
   strut_reserve_names(reader, &things->names, map->count);
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
+  STRUT_ENTRIES (reader, key, map) {
     const char *name = strut_keep_text(reader, key->text);
     size_t i = strut_thing_count(reader->scene, thing);
     void *object = strut_add_thing(reader, thing, key, name);
@@ -149,7 +151,6 @@ static strut_section_reader *const by_hand[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_MEMBER] = strut_read_member,
     [STRUT_SECTION_HINGE] = strut_read_hinge,
     [STRUT_SECTION_CELL] = strut_read_cell,
-    [STRUT_SECTION_COLLISION] = strut_read_collision,
     [STRUT_SECTION_DISTANCE] = strut_read_distance,
     [STRUT_SECTION_ACTUATOR] = strut_read_actuator,
     [STRUT_SECTION_LOAD] = strut_read_load,
@@ -326,12 +327,10 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
 
 bool strut_read_nested(strut_reader *reader, const strut_key *key, strut_fields *outer,
                        void *object, size_t object_size) {
-  char text[200];
   strut_fields fields;
   const strut_slot *slot = &outer->slot[key - strut_key_at(strut_section_first(key->section))];
-  snprintf(text, sizeof text, "the %s of %.150s", *key->words ? key->words : key->name,
-           strut_owner_text(reader, outer->owner));
-  strut_owner within = {text, NULL};
+  strut_owner within =
+      strut_owner_within(reader, *key->words ? key->words : key->name, outer->owner);
   strut_read_fields(reader, strut_section_below(key), slot->value, within, &fields);
   fields.key = slot->key, fields.outer = outer;
   strut_require(reader, &fields, slot->key->place);
@@ -398,7 +397,7 @@ bool strut_store_fields(strut_reader *reader, strut_fields *fields, void *object
                         size_t object_size) {
   int size = strut_section_size(fields->section);
   const strut_key *keys = strut_key_at(strut_section_first(fields->section));
-  bool fine = strut_check_companions(reader, fields);
+  bool fine = strut_check_rules(reader, fields);
   for (int i = 0; i < size; i++) {
     strut_slot *slot = &fields->slot[i];
     bool given = slot->state == STRUT_GIVEN;

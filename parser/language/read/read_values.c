@@ -13,16 +13,21 @@
 /* Longest text from the file in a message, and most names compared for suggestions. */
 enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 255 };
 
+void strut_report_text(strut_reader *reader, strut_place place, const char *origin,
+                       const char *text) {
+  reader->failed = true;
+  if (strut_error_is_repeated(reader, place, origin)) return;
+  strut_diagnose(reader->diagnostics, place, "%s", text);
+  strut_error_remember(reader, place, origin);
+}
+
 bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
   char text[1200] = "";
   va_list arguments;
-  reader->failed = true;
-  if (strut_error_is_repeated(reader, place, format)) return false;
   va_start(arguments, format);
   if (!strut_diagnostics_full(reader->diagnostics)) vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  strut_diagnose(reader->diagnostics, place, "%s", text);
-  strut_error_remember(reader, place, format);
+  strut_report_text(reader, place, format, text);
   return false;
 }
 
@@ -108,21 +113,26 @@ const char *strut_owner_text(strut_reader *reader, strut_owner owner) {
                           strut_sanitised_text(reader, strut_local_name(reader, owner.name))));
 }
 
+strut_owner strut_owner_within(strut_reader *reader, const char *what, strut_owner owner) {
+  return (strut_owner){
+      strut_scratch_text(reader, "the %s of %.150s", what, strut_owner_text(reader, owner)), NULL};
+}
+
 bool strut_hints_left(const strut_reader *reader) {
   return reader->suggestions < MOST_SUGGESTIONS && !strut_diagnostics_full(reader->diagnostics);
 }
 
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
-                       const void *context, size_t count) {
+                       const void *context) {
   if (strlen(word) > LONGEST_NAME || !strut_hints_left(reader)) return "";
-  reader->suggestions += count;
+  for (size_t i = 0; i < MOST_SUGGESTIONS && names(context, i); i++) reader->suggestions++;
   const strut_near near = strut_near_to(word, names, context);
   return kept(reader, strut_arena_text(&reader->scratch, near.text, strlen(near.text)));
 }
 
 const char *strut_hint_of_rows(strut_reader *reader, const char *word,
                                const strut_named_rows *rows) {
-  return strut_hint(reader, word, strut_row_name, rows, rows->count);
+  return strut_hint(reader, word, strut_row_name, rows);
 }
 
 strut_place strut_root_place(const strut_reader *reader) {
@@ -175,11 +185,15 @@ static bool is_scalar(const strut_tree *value) {
   return value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
 }
 
-bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
-                       strut_owner owner, const char *expected) {
-  if (is_scalar(value)) return true;
+bool strut_refuse_value(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, const char *expected) {
   return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected,
                             key, strut_owner_text(reader, owner), strut_found(reader, value));
+}
+
+bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
+                       strut_owner owner, const char *expected) {
+  return is_scalar(value) || strut_refuse_value(reader, value, key, owner, expected);
 }
 
 /* The place in the file of an error within an expression; the whole value if quotes or escapes hide it. */
@@ -344,21 +358,20 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
                                  const strut_namespace *namespace) {
   const local_names within = {reader, namespace};
   const char *word = value->text, *hint = strut_copy_hint(reader, value);
-  if (!*hint && reader->scope)
-    hint = strut_hint(reader, word, local_name, &within, namespace->count);
+  if (!*hint && reader->scope) hint = strut_hint(reader, word, local_name, &within);
   if (*hint) return hint;
   if (!strut_within_part(reader, value, namespace->map))
-    return strut_hint(reader, word, namespace->name, namespace->context, namespace->count);
+    return strut_hint(reader, word, namespace->name, namespace->context);
   return strut_name_map_find(namespace->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
 /* "; there is 'a', 'b'" where there are few. */
 static const char *list_of_names(strut_reader *reader, const strut_namespace *names) {
-  const char *text = names->count <= 14 ? "" : NULL;
-  for (size_t i = 0; text && i < names->count; i++)
-    text = strut_scratch_text(reader, "%s%s'%s'", text, i ? ", " : "; the names here are ",
-                              names->name(names->context, i));
-  return text ? text : "";
+  const char *text = "", *name;
+  if (names->name(names->context, 14)) return text;
+  for (size_t i = 0; (name = names->name(names->context, i)); i++)
+    text = strut_scratch_text(reader, "%s%s'%s'", text, i ? ", " : "; the names here are ", name);
+  return text;
 }
 
 /* The thing whose name is the text of the parameter that the value names, or -1, which was reported. */

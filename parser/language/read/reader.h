@@ -39,6 +39,7 @@ typedef struct strut_fields {
   strut_section section;
   strut_owner owner;          /* what messages call it */
   bool broken;                /* some value, or the mapping itself, could not be read */
+  bool strange;               /* it has an unknown key, which may mean any that is missing */
   bool unresolved;            /* a thing that it must name is not known */
   const strut_tree *map;      /* NULL: the mapping is absent */
   const strut_tree *key;      /* whose value it is, where reading needs its place */
@@ -151,7 +152,6 @@ typedef struct strut_reader {
   strut_dimension *state_dimension;                                /* (states) */
   size_t pipe_drive_count;
   struct strut_pipe_drive *pipe_drives; /* actuators that pipes stand for */
-  const strut_tree **velocity_source;   /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
@@ -195,15 +195,20 @@ bool strut_tree_is_study(const strut_tree *root);
  */
 bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/** Reports a text that is there already; of those with one `origin` at one place, those of further copies are counted. */
+void strut_report_text(strut_reader *reader, strut_place place, const char *origin,
+                       const char *text);
 /** "member 'm1'", for use within a message; lives in scratch. */
 const char *strut_owner_text(strut_reader *reader, strut_owner owner);
+/** "the law of member 'm1'", as the subject of messages about what is within it; its text lives in scratch. */
+strut_owner strut_owner_within(strut_reader *reader, const char *what, strut_owner owner);
 /** Text from the file, shortened and without control characters; lives in scratch. */
 const char *strut_sanitised_text(strut_reader *reader, const char *text);
 /** What may be said of reader->limit_things where that is too little: "; 'limit_things' of ...", or "". */
 const char *strut_limit_hint(strut_reader *reader);
-/** "; did you mean 'x'?" or "": the nearest of `count` names; lives in scratch. */
+/** "; did you mean 'x'?" or "": the nearest of these names; lives in scratch. */
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
-                       const void *context, size_t count);
+                       const void *context);
 const char *strut_hint_of_rows(strut_reader *reader, const char *word,
                                const strut_named_rows *rows);
 /** True while suggestions may still be looked for: they are bounded for the file as a whole. */
@@ -228,6 +233,9 @@ const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_r
 bool strut_lacks_space(const strut_tree *value);
 /** The same of a text whose key would be `name`. */
 bool strut_lacks_space_after(const strut_tree *value, const char *name);
+/** Reports "expected EXPECTED for 'KEY' of OWNER, found VALUE"; returns false. */
+bool strut_refuse_value(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, const char *expected);
 /** Is it a scalar that is not null? If not, that is reported. */
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected);
@@ -257,7 +265,6 @@ typedef struct strut_namespace {
   const strut_name_map *map;
   strut_names *name; /* of number i, for suggestions */
   const void *context;
-  size_t count;
 } strut_namespace;
 
 /** The index of what the scalar names, or -1, which was reported. */
@@ -293,6 +300,10 @@ const char *strut_keep_text(strut_reader *reader, const char *text);
 /** The first entry of a mapping of names to things (NULL: none), and the one after; enter its scope. */
 const strut_tree *strut_first_entry(strut_reader *reader, const strut_tree *map);
 const strut_tree *strut_following_entry(strut_reader *reader, const strut_tree *key);
+/** Each entry, as `key`. */
+#define STRUT_ENTRIES(reader, key, map)                                                            \
+  for (const strut_tree *(key) = strut_first_entry(reader, map); key;                              \
+       (key) = strut_following_entry(reader, key))
 /** Enters the scope of an entry; returns the one before. */
 strut_copy *strut_enter_scope(strut_reader *reader, const strut_tree *key);
 /** The index of what `text`, or the text parameter of that name, names in the scope of `value` (NULL: of the reader), or -1. */
@@ -361,8 +372,11 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
 const strut_tree *strut_entries(strut_reader *reader, int key);
 size_t strut_entry_count(strut_reader *reader, int key);
 
-/** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
-bool strut_check_companions(strut_reader *reader, strut_fields *fields);
+/**
+ * Reports keys that mean nothing without another one, of which those of a group or of a base become absent, and what
+ * breaks STRUT_KEY_RULES. False: something does; then the fields are broken.
+ */
+bool strut_check_rules(strut_reader *reader, strut_fields *fields);
 /** What a study must compute for a key of it to mean anything, "modes|path"; NULL: anything. */
 const char *strut_study_key_computes(int key);
 
@@ -465,11 +479,9 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
 /** `[n1, n4]`, or a list of such lists, in the scene's memory. */
 bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                           strut_node_set **sets, size_t *count);
-/** Reads `{NODE: [x, y], ...}` and calls back for each node that could be read. */
-typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double pair[2],
-                              const strut_tree *value);
+/** Reads `{NODE: [x, y], ...}`: pairs of numbers of each node, `stride` bytes apart from `pairs` on. */
 bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
-                           strut_dimension dimension, strut_pair_taker *take);
+                           strut_dimension dimension, void *pairs, size_t stride);
 
 /* read_data.c: measured data */
 
@@ -512,9 +524,9 @@ bool strut_read_data_point(strut_reader *reader, const strut_tree *map, strut_ow
 /** A thing whose value may be more than a mapping. False: it could not be read. */
 typedef bool strut_thing_reader(strut_reader *reader, const strut_tree *key, void *object);
 strut_thing_reader strut_read_node, strut_read_configuration;
-strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_collision,
-    strut_read_distance, strut_read_actuator, strut_read_load, strut_read_unbalance,
-    strut_read_slider, strut_read_sensor, strut_read_trigger;
+strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_distance,
+    strut_read_actuator, strut_read_load, strut_read_unbalance, strut_read_slider,
+    strut_read_sensor, strut_read_trigger;
 
 /** The law of a member or a hinge, whose strain and force have these dimensions. */
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,

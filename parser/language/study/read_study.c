@@ -130,12 +130,11 @@ static void refuse_kept(strut_study_reader *reader, const strut_tree *item,
   kept_names names = {.quantities = run ? quantities : NULL};
   list_kept(study, &names, expected, sizeof expected);
   if (!strut_read_scalar(reader->reader, item, "keep", study_owner, expected)) return;
-  size_t count = names.word_count + (names.quantities ? names.quantities->count : 0);
   strut_report_error(reader->reader, item->place,
                      "expected %s%s for 'keep' of the study, found '%s'%s", expected,
                      run ? ", or a quantity that the model measures," : "",
                      strut_sanitised_text(reader->reader, item->text),
-                     strut_hint(reader->reader, item->text, kept_name, &names, count));
+                     strut_hint(reader->reader, item->text, kept_name, &names));
 }
 
 static bool is_twice(const strut_tree *list, const strut_tree *item) {
@@ -271,10 +270,6 @@ static void read_path(strut_study_reader *reader, const strut_slot *slot) {
   read_path_value(reader, &fields, STRUT_KEY_PATH_FROM, &study->path.from_unit);
   read_path_value(reader, &fields, STRUT_KEY_PATH_UNTIL, &study->path.until_unit);
   if (fields.broken) return;
-  if (study->path.over && !study->path.until_given)
-    strut_report_error(reader->reader, slot->value->place,
-                       "the path lacks 'until', the end value of '%s'",
-                       strut_sanitised_text(reader->reader, study->path.over));
   if (study->path.from_given && study->path.until_given && study->path.from == study->path.until)
     strut_report_error(reader->reader, slot->value->place,
                        "'from' and 'until' of the path are equal");
@@ -312,22 +307,6 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   check_overrides(reader, count);
 }
 
-/* Without axes there must be something else that makes points. */
-static void require_points(strut_study_reader *reader, strut_fields *top) {
-  char expected[300];
-  strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
-  if (axes->state != STRUT_ABSENT || reader->reader->holes ||
-      strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT ||
-      strut_slot_of(top, STRUT_KEY_STUDY_SEARCH)->state != STRUT_ABSENT ||
-      strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state != STRUT_ABSENT ||
-      strut_slot_of(top, STRUT_KEY_STUDY_FIT)->state != STRUT_ABSENT)
-    return;
-  strut_report_error(reader->reader, strut_root_place(reader->reader),
-                     "the study lacks 'axes', expected %s",
-                     strut_key_expected(STRUT_KEY_STUDY_AXES, expected, sizeof expected));
-  axes->state = STRUT_BROKEN;
-}
-
 /* A model instead of a study gets one message instead of one for each line. */
 static bool is_model(const strut_tree *root) {
   return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "nodes", NULL) &&
@@ -352,7 +331,6 @@ static strut_status read_all(strut_study_reader *study_reader, const strut_setti
   strut_read_fields(reader, STRUT_SECTION_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, strut_root_place(reader));
-  require_points(study_reader, &top);
   read_rest(study_reader, &top);
   status = strut_study_open_sources(study_reader, &top, error);
   strut_read_data(reader, strut_slot_of(&top, STRUT_KEY_STUDY_DATA));

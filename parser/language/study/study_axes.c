@@ -122,8 +122,6 @@ static bool read_range(strut_study_reader *reader, along *self) {
   fine = strut_study_store_value(reader, self, &fields, STRUT_KEY_RANGE_TO, false, &keys) && fine;
   fine = strut_study_store_value(reader, self, &fields, STRUT_KEY_RANGE_STEP, false, &keys) && fine;
   self->column->from = keys.from, self->column->to = keys.to, self->column->step = keys.step;
-  bool stepped = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP)->state == STRUT_GIVEN;
-  if (!stepped && keys.count == 0.0) return refuse_range(reader, self, "lacks 'step' or 'count'");
   if (!fine) return false;
   if (keys.count > 0.0) return count_even(reader, self, keys.count, keys.scale == 1);
   if (keys.scale == 1)
@@ -385,10 +383,8 @@ static void read_curve(strut_study_reader *reader, const strut_slot *slot) {
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     double *pair = study->goal.curve[study->goal.curve_count];
     if (item->kind != STRUT_TREE_LIST || item->count != 2) {
-      strut_report_error(reader->reader, item->place,
-                         "expected a displacement and a force such as [-1 mm, 2 N] for 'curve' of "
-                         "the study, found %s",
-                         strut_found(reader->reader, item));
+      strut_refuse_value(reader->reader, item, "curve", (strut_owner){"the study", NULL},
+                         "a displacement and a force such as [-1 mm, 2 N]");
       continue;
     }
     if (strut_read_number(reader->reader, item->first, "curve", curve_owner, STRUT_DIM_LENGTH,
@@ -433,11 +429,7 @@ static void require_pairs(strut_study_reader *reader, strut_fields *top) {
 
 void strut_study_read_goals(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *shape = strut_slot_of(top, STRUT_KEY_STUDY_SHAPE);
-  const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
   const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
-  if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
-    strut_report_error(reader->reader, like->key->place,
-                       "'shape' and 'like' of the study exclude each other");
   if (shape->state == STRUT_GIVEN) read_shape(reader, shape);
   if (curve->state == STRUT_GIVEN) read_curve(reader, curve);
   if (curve->state == STRUT_GIVEN && reader->file->study.compute == STRUT_COMPUTE_PATH &&
@@ -452,30 +444,6 @@ void strut_study_read_goals(strut_study_reader *reader, strut_fields *top) {
 
 static const strut_owner follow_owner = {"what is followed", NULL};
 
-void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
-                         const int *keys, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    const strut_slot *slot = strut_slot_of(top, keys[i]);
-    if (slot->state == STRUT_GIVEN)
-      strut_report_error(reader->reader, slot->key->place,
-                         "'%s' and '%s' exclude each other: use two studies", slot->key->text,
-                         own->key->text);
-  }
-}
-
-/* Keys that choose or judge points in another way. */
-static void refuse_others(strut_study_reader *reader, strut_fields *top, const strut_slot *own) {
-  static const int others[] = {
-      STRUT_KEY_STUDY_REFINE,      STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_SEARCH,
-      STRUT_KEY_STUDY_SENSITIVITY, STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_CHECK,
-      STRUT_KEY_STUDY_LIMIT,       STRUT_KEY_STUDY_SHAPE,        STRUT_KEY_STUDY_LIKE};
-  strut_study_exclude(reader, top, own, others, sizeof others / sizeof others[0]);
-  const strut_slot *compute = strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE);
-  if (compute->state == STRUT_GIVEN && reader->file->study.compute != STRUT_COMPUTE_RUN)
-    strut_report_error(reader->reader, compute->value->place,
-                       "a study that follows motions computes no '%s'", compute->value->text);
-}
-
 /* Both ends of the range, and values within it. */
 static void read_values(strut_study_reader *reader, strut_fields *fields, strut_study_along *a,
                         strut_study_follow *follow) {
@@ -489,11 +457,6 @@ static void read_values(strut_study_reader *reader, strut_fields *fields, strut_
     fine = strut_report_error(reader->reader, to->value->place,
                               "'to' of what is followed must be above 'from'");
   if (!fine || at->state != STRUT_GIVEN) return;
-  if (!at->value->count || at->value->count > STRUT_STUDY_FOLLOW_MOST_AT) {
-    strut_report_error(reader->reader, at->value->place, "'at' may have 1 to %d values, found %zu",
-                       STRUT_STUDY_FOLLOW_MOST_AT, (size_t)at->value->count);
-    return;
-  }
   double *values = strut_study_allocate(reader, at->value->count, sizeof *values);
   follow->at = values;
   for (const strut_tree *item = at->value->first; item && values; item = item->next) {
@@ -531,17 +494,14 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  refuse_others(reader, top, slot);
+  const strut_slot *compute = strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE);
+  if (compute->state == STRUT_GIVEN && study->compute != STRUT_COMPUTE_RUN)
+    strut_report_error(reader->reader, compute->value->place,
+                       "a study that follows motions computes no '%s'", compute->value->text);
   strut_study_follow *follow = strut_study_allocate(reader, 1, sizeof *follow);
   if (!follow) return;
   strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,
                     follow);
-  const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_FOLLOW_START_FROM);
-  if (starts->state == STRUT_GIVEN &&
-      (!starts->value->count || starts->value->count > STRUT_STUDY_FOLLOW_MOST_FROM))
-    strut_report_error(reader->reader, starts->value->place,
-                       "'start_from' may have 1 to %d configurations, found %zu",
-                       STRUT_STUDY_FOLLOW_MOST_FROM, (size_t)starts->value->count);
   read_over(reader, &fields, follow);
   study->follow = follow;
 }

@@ -25,8 +25,8 @@ typedef struct reading {
 /* ---- parameters ---- */
 
 static void read_over(strut_study_reader *reader, const strut_slot *over, strut_study_fit *fit) {
-  strut_study_read_variables(reader, over, "the fit", STRUT_FIT_MOST_VARIABLES, &fit->variables,
-                             &fit->variable_count, &fit->column);
+  strut_study_read_variables(reader, over, "the fit", &fit->variables, &fit->variable_count,
+                             &fit->column);
   for (size_t i = 0; i < fit->variable_count; i++) {
     const strut_search_variable *variable = &fit->variables[i];
     if (variable->choice_count || variable->wraps || variable->integer)
@@ -247,18 +247,9 @@ static void choose_kind(reading *self, const strut_tree *key) {
              : table   ? STRUT_FIT_TABLE
                        : STRUT_FIT_REST;
   if (curve) to->compute = STRUT_COMPUTE_PATH;
-  if (over_time + curve + table > 1)
-    strut_report_error(reader, self->rest->place,
-                       "match '%s' can have only one of 'time', 'displacement' and 'compute'",
-                       to->name);
-  if (align->state == STRUT_GIVEN && (curve || table))
-    strut_report_error(reader, align->key->place, "'align' of match '%s' is for motions and shapes",
-                       to->name);
   if (to->align.delay && !over_time)
     strut_report_error(reader, align->value->place, "a delay needs the 'time' of a motion");
   curve = to->kind == STRUT_FIT_CURVE;
-  if (curve && !strut_mentions(&self->fields, STRUT_KEY_MATCH_FORCE))
-    strut_report_error(reader, key->place, "match '%s' of a displacement lacks 'force'", to->name);
   if (curve && first)
     strut_report_error(reader, first->place,
                        "a match of a displacement compares its 'force' alone, not '%s'",
@@ -432,16 +423,10 @@ static void refuse_unused(strut_study_reader *reader, strut_fields *top,
 }
 
 void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
-  static const int others[] = {STRUT_KEY_STUDY_AXES,         STRUT_KEY_STUDY_VARIANTS,
-                               STRUT_KEY_STUDY_REFINE,       STRUT_KEY_STUDY_SEARCH,
-                               STRUT_KEY_STUDY_FOLLOW,       STRUT_KEY_STUDY_SENSITIVITY,
-                               STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_CHECK,
-                               STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_COMPUTE};
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_FIT);
   strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
   strut_study_fit *fit = strut_study_allocate(reader, 1, sizeof *fit);
   if (!fit || !study->axes || reader->reader->failed) return;
   *fit = (strut_study_fit){.starts = 8, .seed = 1};
@@ -450,11 +435,6 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *matches = strut_slot_of(&fields, STRUT_KEY_FIT_MATCH);
   if (over->state != STRUT_GIVEN || matches->state != STRUT_GIVEN) return;
   size_t count = matches->value->count;
-  if (!count || count > STRUT_FIT_MOST_MATCHES) {
-    strut_report_error(reader->reader, matches->value->place,
-                       "a fit has 1 to %d matches, found %zu", STRUT_FIT_MOST_MATCHES, count);
-    return;
-  }
   fit->matches = strut_study_allocate(reader, count, sizeof *fit->matches);
   if (!fit->matches) return;
   const strut_tree *sets[STRUT_FIT_MOST_MATCHES];

@@ -267,7 +267,6 @@ static bool read_numbers(strut_study_reader *reader, strut_study_along *along,
 static bool read_parameter(strut_study_reader *reader, strut_study_axis *axis,
                            strut_study_along *along, strut_distribution *distributions) {
   strut_fields fields;
-  int kinds = 0;
   bool fine = strut_study_begin_along(reader, axis, along);
   if (!along->parameter) return false; /* it has no column */
   const strut_owner owner = {"parameter", along->parameter->name};
@@ -277,21 +276,16 @@ static bool read_parameter(strut_study_reader *reader, strut_study_axis *axis,
                               "parameter '%s' is a text, which has no distribution",
                               along->parameter->name);
   strut_read_fields(reader->reader, STRUT_SECTION_DISTRIBUTION, along->value, owner, &fields);
-  if (fields.broken) return false;
+  if (!strut_check_rules(reader->reader, &fields) || fields.broken) return false;
   for (int k = 0; k < STRUT_DISTRIBUTION_COUNT; k++) {
     const int key = STRUT_KEY_DISTRIBUTION_UNIFORM + k;
     const strut_slot *slot = strut_slot_of(&fields, key);
     if (slot->state != STRUT_GIVEN) continue;
-    kinds++;
     strut_store_choice(strut_key_at(key), distribution);
     fine = read_numbers(reader, along, slot, distribution) && fine;
   }
-  if (kinds == 0)
-    strut_report_error(reader->reader, along->value->place,
-                       "expected a distribution such as {uniform: [1, 2]} for parameter '%s'",
-                       along->parameter->name);
   along->column->kind = STRUT_RANGE_LIST;
-  return fine && kinds > 0;
+  return fine;
 }
 
 /* Is this a list of so many, one for each parameter? */
@@ -345,15 +339,10 @@ static void make_values(strut_study_reader *reader, const strut_sample_keys *key
     reader->reader->out_of_memory = true;
 }
 
-/* Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
+/* Reads parameters and their distributions into columns of the axis; false: reported. */
 static bool read_distributions(strut_study_reader *reader, const strut_tree *over,
-                               strut_owner owner, size_t most, strut_study_axis *axis,
-                               strut_distribution *distributions) {
+                               strut_study_axis *axis, strut_distribution *distributions) {
   bool fine = true;
-  if (over->count == 0 || over->count > most)
-    return strut_report_error(reader->reader, over->place,
-                              "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
-                              strut_owner_text(reader->reader, owner), (size_t)over->count);
   axis->columns = strut_study_allocate(reader, over->count, sizeof *axis->columns);
   if (!axis->columns) return false;
   for (const strut_tree *key = over->first; key; key = key->next->next) {
@@ -372,8 +361,7 @@ void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
   if (over->state != STRUT_GIVEN) return;
   axis->count = keys.count;
-  bool fine = read_distributions(reader, over->value, sample_owner, STRUT_SAMPLE_MOST_NUMBERS, axis,
-                                 distributions);
+  bool fine = read_distributions(reader, over->value, axis, distributions);
   double *factor = NULL;
   fine = fine && read_factor(reader, strut_slot_of(&fields, STRUT_KEY_SAMPLE_CORRELATION),
                              axis->column_count, &factor);
@@ -420,10 +408,7 @@ void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top)
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY);
   strut_distribution distributions[STRUT_SENSITIVITY_MOST] = {0};
   strut_fields fields;
-  static const int others[] = {STRUT_KEY_STUDY_REFINE, STRUT_KEY_STUDY_TRAJECTORIES,
-                               STRUT_KEY_STUDY_SEARCH};
   if (slot->state != STRUT_GIVEN) return;
-  strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
   sensitivity->samples = 256, sensitivity->seed = 1, sensitivity->derivatives = true;
   strut_read_object(reader->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner,
                     &fields, sensitivity);
@@ -438,8 +423,7 @@ void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top)
                        "the sensitivity analysis has neither samples nor derivatives");
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
-  bool fine = read_distributions(reader, over->value, sensitivity_owner, STRUT_SENSITIVITY_MOST,
-                                 axis, distributions);
+  bool fine = read_distributions(reader, over->value, axis, distributions);
   sensitivity->axis = study->axis_count++;
   sensitivity->wanted = true;
   if (fine && !fields.broken && !reader->reader->failed)

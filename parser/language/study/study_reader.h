@@ -69,10 +69,10 @@ bool strut_study_read_along(strut_study_reader *reader, strut_study_axis *axis,
 
 /* study_search.c */
 
-/** Reads the parameters that a search or a fit, which `of` says, is over, at most `most`, and adds their axis. */
+/** Reads the parameters that a search or a fit, which `of` says, is over, and adds their axis. */
 void strut_study_read_variables(strut_study_reader *reader, const strut_slot *over, const char *of,
-                                size_t most, strut_search_variable **variables,
-                                size_t *variable_count, size_t *column);
+                                strut_search_variable **variables, size_t *variable_count,
+                                size_t *column);
 /** Reads what is searched, after the axes, and adds its axes. Nothing without one. */
 void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot);
 
@@ -112,7 +112,3 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top);
 
 /** Reads what is followed, after the axes. Nothing without it. */
 void strut_study_read_follow(strut_study_reader *reader, strut_fields *top);
-
-/** Reports those of the keys that are given: the study has `own`, which excludes them. */
-void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
-                         const int *keys, size_t count);

@@ -119,15 +119,10 @@ static bool read_variable(strut_study_reader *reader, strut_study_axis *axis,
 }
 
 void strut_study_read_variables(strut_study_reader *reader, const strut_slot *over, const char *of,
-                                size_t most, strut_search_variable **variables,
-                                size_t *variable_count, size_t *column) {
+                                strut_search_variable **variables, size_t *variable_count,
+                                size_t *column) {
   strut_study *study = &reader->file->study;
   size_t count = over->value->count;
-  if (count == 0 || count > most) {
-    strut_report_error(reader->reader, over->value->place,
-                       "%s is 'over' 1 to %zu parameters, found %zu", of, most, count);
-    return;
-  }
   strut_study_axis *axis = &study->axes[study->axis_count++];
   *axis = (strut_study_axis){.count = 1};
   axis->columns = strut_study_allocate(reader, count, sizeof *axis->columns);
@@ -204,30 +199,23 @@ static void read_goals(strut_study_reader *reader, const strut_tree *value,
   bool fine = first->kind == STRUT_TREE_SCALAR &&
               (!two || first->next->kind == STRUT_TREE_SCALAR) && !strut_is_null(first);
   if (!fine) {
-    strut_report_error(reader->reader, value->place,
-                       "expected a column, an expression of columns, or a list of two of them for "
-                       "'%s' of the search, found %s",
-                       search->maximise ? "maximise" : "minimise",
-                       strut_found(reader->reader, value));
+    strut_refuse_value(reader->reader, value, search->maximise ? "maximise" : "minimise",
+                       search_owner,
+                       "a column, an expression of columns, or a list of two of them");
     return;
   }
   keep_text(first, &search->goal);
   if (two) keep_text(first->next, &search->second);
 }
 
-static void read_goal(strut_study_reader *reader, strut_fields *fields, const strut_slot *slot,
+static void read_goal(strut_study_reader *reader, strut_fields *fields,
                       strut_study_search *search) {
   const strut_slot *most = strut_slot_of(fields, STRUT_KEY_SEARCH_MAXIMISE);
   const strut_slot *least = strut_slot_of(fields, STRUT_KEY_SEARCH_MINIMISE);
   const strut_slot *method = strut_slot_of(fields, STRUT_KEY_SEARCH_METHOD);
   search->maximise = most->state == STRUT_GIVEN;
   const strut_slot *goal = search->maximise ? most : least;
-  if (goal->state == STRUT_GIVEN)
-    read_goals(reader, goal->value, search);
-  else if (!fields->broken)
-    strut_report_error(reader->reader, slot->value->place,
-                       "the search lacks 'maximise' or 'minimise', a column of the table or an "
-                       "expression of columns");
+  if (goal->state == STRUT_GIVEN) read_goals(reader, goal->value, search);
   bool two = search->second.text != NULL, given = method->state == STRUT_GIVEN;
   if (given && goal->state == STRUT_GIVEN && two != (search->method == STRUT_SEARCH_NSGA2))
     strut_report_error(reader->reader, method->value->place,
@@ -239,10 +227,6 @@ static void read_goal(strut_study_reader *reader, strut_fields *fields, const st
 static void read_conditions(strut_study_reader *reader, const strut_slot *slot,
                             strut_study_search *search) {
   if (slot->state != STRUT_GIVEN) return;
-  if (slot->value->count > STRUT_SEARCH_MOST_CONDITIONS)
-    strut_report_error(reader->reader, slot->value->place,
-                       "'subject_to' may have %d conditions, found %zu",
-                       STRUT_SEARCH_MOST_CONDITIONS, (size_t)slot->value->count);
   search->conditions =
       strut_study_allocate(reader, slot->value->count + 1, sizeof *search->conditions);
   for (const strut_tree *item = slot->value->first; item && search->conditions; item = item->next) {
@@ -279,17 +263,13 @@ static void choose_derivatives(strut_study_reader *reader, strut_fields *fields,
         "whole numbers and 'worst_over'; give another method");
 }
 
-/* Keys of a study that a search has no use for. */
-static void refuse_others(strut_study_reader *reader, const strut_slot *slot) {
+static void refuse_trajectories(strut_study_reader *reader, const strut_slot *slot) {
   const strut_study *study = &reader->file->study;
   const strut_tree *root = reader->file->document.root;
   strut_tree *key = NULL;
   if (study->trajectories && strut_tree_find(root, "trajectories", &key))
     strut_report_error(reader->reader, key ? key->place : slot->key->place,
                        "a study that searches records no trajectories: run its best.yaml for that");
-  if (strut_tree_find(root, "refine", &key))
-    strut_report_error(reader->reader, key ? key->place : slot->key->place,
-                       "a study that searches has no grid to refine");
 }
 
 void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot) {
@@ -301,9 +281,9 @@ void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot)
   *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
   strut_read_object(reader->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields,
                     search);
-  read_goal(reader, &fields, slot, search);
+  read_goal(reader, &fields, search);
   read_conditions(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
-  refuse_others(reader, slot);
+  refuse_trajectories(reader, slot);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SEARCH_OVER);
   const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_SEARCH_STARTS);
   if (search->method == STRUT_SEARCH_DIRECT && search->starts > 1)
@@ -315,8 +295,8 @@ void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot)
   strut_study_axis *evaluations = &study->axes[study->axis_count++];
   add_evaluations(reader, search, evaluations, over->value->count);
   read_scenarios(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
-  strut_study_read_variables(reader, over, "the search", STRUT_SEARCH_MOST_VARIABLES,
-                             &search->variables, &search->variable_count, &search->column);
+  strut_study_read_variables(reader, over, "the search", &search->variables,
+                             &search->variable_count, &search->column);
   if (search->method == STRUT_SEARCH_BFGS) choose_derivatives(reader, &fields, search);
   study->search = search;
 }
@@ -393,10 +373,10 @@ static bool compile(binder *self, const char *text, size_t offset, strut_search_
   }
   strut_compiler compiler = {.column = find, .context = self, .program = program};
   if (!strut_expression_compile(text, &scope, &compiler, quantity, &error)) {
-    strut_diagnose(&self->file->diagnostics,
-                   place_of(formula->place, offset + error.offset, error.length),
-                   "in '%s' of the search: %s; 'keep' chooses the columns of the table",
-                   formula->text, error.message);
+    strut_diagnose(
+        &self->file->diagnostics, place_of(formula->place, offset + error.offset, error.length),
+        "in '%s' of the search: %s%s", formula->text, error.message,
+        strstr(error.message, "unknown") ? "; 'keep' chooses the columns of the table" : "");
     return false;
   }
   for (size_t i = 0; i < compiler.length; i++) kept[i] = program[i].instruction;

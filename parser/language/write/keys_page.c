@@ -43,11 +43,10 @@ static void put_limits(strut_writer *writer, const strut_key *key) {
   if (limits.range == STRUT_RANGE_SHARE)
     strut_buffer_add(&writer->out, ", positive, %sat most %g %%", context ? "without a unit " : "",
                      100.0 * limits.most);
-  if (limits.range != STRUT_RANGE_WHOLE) return;
-  strut_put(writer, " from ");
-  strut_put_number(writer, limits.least);
-  strut_put(writer, " to ");
-  strut_put_number(writer, limits.most);
+  if (limits.range == STRUT_RANGE_WHOLE)
+    strut_buffer_add(&writer->out, " from %.0f to %.0f", limits.least, limits.most);
+  if (limits.range == STRUT_RANGE_COUNT)
+    strut_buffer_add(&writer->out, "; %.0f to %.0f of them", limits.least, limits.most);
 }
 
 void strut_put_key_type(strut_writer *writer, const strut_key *key) {

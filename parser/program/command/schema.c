@@ -95,7 +95,6 @@ static void open_unless_removed(schema *self) {
  * member A(x|y) x for a list, y for all others; O(x|y): x for an object; K(x|y): for one with the key `network`; R(x|y)
  * for one of the kind `relay`
  */
-#define SIGNAL "O(<signal>|s)"
 #define ALONG "A([00s]|<range>)"
 #define PLACE "A([22n]|<row of data>)"
 
@@ -229,7 +228,7 @@ static const char *find_shape(const named_shape *shapes, const char *name) {
 }
 
 /* Keys of several forms, and of others numbers. */
-static const named_shape free_shapes[] = {{"mu", SIGNAL},
+static const named_shape free_shapes[] = {{"mu", "O(<signal>|s)"},
                                           {"merge", "O({s}|=[\"touching\"]=)"},
                                           {"repeat", "O(<repeat>|n)"},
                                           {"count", "A([22n]|n)"},
@@ -255,44 +254,10 @@ static const named_shape thing_shapes[] = {
     {NULL, NULL}};
 
 static const named_shape section_shapes[] = {{"node", "A([22n]|<node>)"},
-                                             {"signal", SIGNAL},
+                                             {"signal", "O(<signal>|s)"},
                                              {"quantity", "O(<quantity>|n)"},
                                              {"controller", "R(<relay>|K(<network>|<controller>))"},
                                              {NULL, NULL}};
-
-#define SWITCH "=[true, false, \"yes\", \"no\"]="
-#define AXES "=[\"x\", \"y\"]="
-static const char *const type_shapes[] = {
-    [STRUT_TYPE_VERSION] = "=[1]=",
-    [STRUT_TYPE_TEXT] = "s",
-    [STRUT_TYPE_NAME] = "s",
-    [STRUT_TYPE_NUMBER] = "n",
-    [STRUT_TYPE_EXPRESSION] = "n",
-    [STRUT_TYPE_PAIR] = "[22n]",
-    [STRUT_TYPE_WORD] = "w",
-    [STRUT_TYPE_FIXED] = "A([02" AXES "]|=[\"none\", \"x\", \"y\", \"both\"]=)",
-    [STRUT_TYPE_NODE_PATH] = "[20s]",
-    [STRUT_TYPE_NODE_TRIPLE] = "[33s]",
-    [STRUT_TYPE_NODE_RING] = "[30s]",
-    [STRUT_TYPE_NAME_PAIR] = "[22s]",
-    [STRUT_TYPE_NUMBERS] = "[00n]",
-    [STRUT_TYPE_TIMES] = "[00n]",
-    [STRUT_TYPE_NAMES] = "[00s]",
-    [STRUT_TYPE_POINTS] = "[00[22n]]",
-    [STRUT_TYPE_PROFILE] = "[00[22n]]",
-    [STRUT_TYPE_TABLE] = "[00[22n]]",
-    [STRUT_TYPE_CONTACT_NODES] = "A([00s]|=[\"all\"]=)",
-    [STRUT_TYPE_NODE_SETS] = "[00A([00s]|s)]",
-    [STRUT_TYPE_GROUPS] = "A([00s]|s)",
-    [STRUT_TYPE_SIGNAL] = SIGNAL,
-    [STRUT_TYPE_SIGNALS] = "[00" SIGNAL "]",
-    [STRUT_TYPE_SETTLE] = "O(<settle>|" SWITCH ")",
-    [STRUT_TYPE_STEADY] = "O(<steady>|" SWITCH ")",
-    [STRUT_TYPE_KEEP] = "[00k]",
-    [STRUT_TYPE_LAW] = "O(<law>|l)",
-    [STRUT_TYPE_AXES] = "[00x]",
-    [STRUT_TYPE_THINGS] = "{!t}",
-};
 
 /* ---- keys ---- */
 
@@ -325,27 +290,31 @@ static void put_value(schema *self, const strut_key *key) {
              strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)) { /* it may be a node of that name */
     put_shape(self, key, "A([22n]|{!t})");
   } else if (key->type != STRUT_TYPE_FREE) {
-    put_shape(self, key, type_shapes[key->type]);
+    put_shape(self, key, strut_type_shape(key->type));
   } else {
     bool search = key->section == STRUT_SECTION_SEARCH;
     put_shape(self, key, search ? "A([22s]|s)" : find_shape(free_shapes, key->name));
   }
 }
 
-/* The range of numbers; that of expressions is not known here. */
+/* The range of numbers, that of expressions is not known here; or how many entries there may be. */
 static void put_limits(schema *self, const strut_key *key) {
-  if (key->type != STRUT_TYPE_NUMBER) return;
+  bool count = key->limits.range == STRUT_RANGE_COUNT, list = *strut_type_shape(key->type) == '[';
+  const char *least = !count ? "minimum" : list ? "minItems" : "minProperties";
+  const char *most = !count ? "maximum" : list ? "maxItems" : "maxProperties";
+  if (!count && key->type != STRUT_TYPE_NUMBER) return;
   switch (key->limits.range) {
     case STRUT_RANGE_ANY: break;
     case STRUT_RANGE_NOT_NEGATIVE: put_member(self, "minimum", "0"); break;
     case STRUT_RANGE_SHARE:
     case STRUT_RANGE_ABOVE_ZERO: put_member(self, "exclusiveMinimum", "0"); break;
+    case STRUT_RANGE_COUNT:
     case STRUT_RANGE_WHOLE:
-      strut_json_number(&self->json, self->open[self->depth], "minimum", key->limits.least);
+      strut_json_number(&self->json, self->open[self->depth], least, key->limits.least);
       break;
   }
   if (key->limits.most > 0.0)
-    strut_json_number(&self->json, self->open[self->depth], "maximum", key->limits.most);
+    strut_json_number(&self->json, self->open[self->depth], most, key->limits.most);
 }
 
 /* A default that is a value; the others are in the description. */

@@ -48,18 +48,11 @@ strut_status strut_sweep_figures_check(strut_sweep_study *study);
  */
 strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const char *directory,
                                              strut_error *error);
-/** Takes note of what all files of a directory hold: `own`, and those of other shards. */
-void strut_sweep_refine_learn(strut_refinement *refinement, const char *directory,
-                              strut_shard shard, strut_slots *own);
 /** How far the refinement in a directory is. */
 strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char *directory,
                                        strut_slots *slots, strut_slots_progress *progress,
                                        strut_error *error);
 
-/* sweep_search.c; nothing where the study has no sensitivity analysis */
-
-/** Checks that what is analysed are columns. STRUT_BAD_SCENE with the reason. */
-strut_status strut_sweep_sensitivity_check(strut_sweep_study *study);
 #define STRUT_PARTIAL_TABLE "table-partial.csv"
 
 /** A study that is computed, and where its results go. */
@@ -107,12 +100,10 @@ typedef struct strut_study_form {
   strut_status (*report)(const strut_study_job *job, const void *result, const char *table);
   void (*release)(void *result); /* may be NULL */
 } strut_study_form;
-extern const strut_study_form strut_search_form, strut_follow_form;
+extern const strut_study_form strut_follow_form;
 
 /** Draws each figure as DIR/NAME.svg, of the table at `path` or of the runs beside it. */
 strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *path);
-/** Writes sensitivity.csv and sensitivity.svg into DIR, and reports what is in the former. */
-strut_status strut_sweep_sensitivity_complete(const strut_study_job *job);
 /** Tells each warning of the runs once, with its count. */
 void strut_sweep_tell_warnings(const strut_study_job *job);
 /** Tells how many points failed or are inaccurate; the status that follows from it. */

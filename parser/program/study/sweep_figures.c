@@ -286,7 +286,7 @@ strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *pa
   strut_sweep_show_units(&job->study->plan, &table);
   for (size_t i = 0; i < study->figure_count; i++) {
     strut_error error = {0};
-    if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_search.c draws it */
+    if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_compute.c draws it */
     strut_status status = strut_sweep_figure(&job->study->plan, job->arguments->output,
                                              &study->figures[i], &table, job->searched, &error);
     if (status == STRUT_USAGE)

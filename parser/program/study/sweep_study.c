@@ -188,6 +188,25 @@ static strut_status place_fault(strut_sweep_study *study, strut_error *error) {
   return STRUT_BAD_SCENE;
 }
 
+/* What a sensitivity analysis analyses are columns. */
+static strut_status check_sensitivity(strut_sweep_study *study) {
+  const strut_sweep_plan *plan = &study->plan;
+  strut_study_file *file = &study->file;
+  if (!plan->study->sensitivity.wanted) return STRUT_OK;
+  const strut_tree *analysis = strut_tree_find(file->document.root, "sensitivity", NULL);
+  const strut_tree *of = strut_tree_find(analysis, "of", NULL);
+  for (const strut_tree *name = of->first; name; name = name->next) {
+    const strut_near near =
+        strut_near_to(name->text, strut_row_name, STRUT_NAMED(plan->columns, plan->column_count));
+    if (strut_slot_named(plan->columns, plan->column_count, name->text) < plan->column_count)
+      continue;
+    strut_diagnose(&file->diagnostics, name->place,
+                   "the sensitivity analysis: the table has no column '%.60s'%s", name->text,
+                   *near.text ? near.text : "; 'keep' lists what it has");
+  }
+  return file->diagnostics.count ? STRUT_BAD_SCENE : STRUT_OK;
+}
+
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_error *error) {
   strut_study_file *file = &study->file;
@@ -205,7 +224,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
   if (!status && file->study.fit) status = bind_fit(study, error);
   if (!status) status = strut_sweep_figures_check(study);
-  if (!status) status = strut_sweep_sensitivity_check(study);
+  if (!status) status = check_sensitivity(study);
   if (status) return status;
   if (!identify(arguments, file, study->slots.hash)) return strut_no_memory(error, "");
   study->slots.version = STRUT_VERSION;

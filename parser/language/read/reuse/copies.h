@@ -122,7 +122,7 @@ typedef struct strut_merger {
   strut_copy *scope;
   const strut_tree *a;     /* NULL: all that touch */
   strut_placed_tree b;     /* in another scope, maybe */
-  const strut_tree *place; /* of touching */
+  const strut_tree *place; /* of touching; of `onto`, its key */
   struct strut_merger *next;
 } strut_merger;
 

@@ -106,14 +106,20 @@ static void unite(merging *self, const strut_merger *merger, int32_t a, int32_t 
 static void merge_named(merging *self, const strut_merger *merger) {
   strut_reader *reader = self->reader;
   strut_copy *own = merger->scope;
-  strut_owner owner = {!own                            ? "the scene"
-                       : own->kind == STRUT_SCOPE_LINK ? "'next'"
-                                                       : "part",
-                       own && own->kind != STRUT_SCOPE_LINK ? own->placement->part->name : NULL};
+  bool onto = strcmp(merger->place->text, "onto") == 0;
+  bool link = own && own->kind == STRUT_SCOPE_LINK && !onto;
+  strut_owner owner = {!own   ? "the scene"
+                       : onto ? "place"
+                       : link ? "'next'"
+                              : "part",
+                       !own || link ? NULL
+                       : onto       ? own->placement->key->text
+                                    : own->placement->part->name};
+  const char *key = onto ? "onto" : "merge";
   reader->scope = own;
-  int32_t a = strut_read_reference(reader, merger->a, "merge", owner, STRUT_THING_NODE);
-  if (own && own->kind == STRUT_SCOPE_LINK) owner.kind = "the next copy";
-  int32_t b = strut_read_reference(reader, &merger->b.tree, "merge", owner, STRUT_THING_NODE);
+  int32_t a = strut_read_reference(reader, merger->a, key, owner, STRUT_THING_NODE);
+  if (link) owner.kind = "the next copy";
+  int32_t b = strut_read_reference(reader, &merger->b.tree, key, owner, STRUT_THING_NODE);
   if (a >= 0 && b >= 0) {
     double apart = distance(self, a, b);
     if (apart > SAME * self->size)
