@@ -310,14 +310,9 @@ int strutlib_abi_version(void) { return STRUTLIB_ABI_VERSION; }
 const char *strutlib_version(void) { return STRUT_VERSION; }
 void strutlib_release(char *text) { strut_release(text); }
 
-char *abi_give(char *text, strutlib_error **error) {
-  if (!text) abi_no_memory(error);
-  return text;
-}
-
 char *strutlib_schema(int study, strutlib_error **error) {
-  if (error) *error = NULL;
-  return abi_give(strut_schema_write(study != 0), error);
+  abi_enter(error);
+  return abi_leave_text(error, strut_schema_write(study != 0), NULL);
 }
 
 static struct cJSON *put_places(strut_json *json, struct cJSON *to, const strut_tree *node) {
@@ -346,15 +341,11 @@ char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **
   strut_diagnostics_source(&found, name, text, strlen(text));
   strut_status status = strut_document_read(&document, &found);
   if (!status) places = put_places(&json, json.root, document.root);
-  if (status == STRUT_BAD_SCENE)
-    abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
-  else
-    answer = abi_give(status || json.failed ? NULL : strut_json_print(places), error);
+  if (!status && !json.failed) answer = strut_json_print(places);
   strut_release(strut_json_end(&json));
   strut_document_free(&document);
-  strut_diagnostics_free(&found);
-  abi_leave();
-  return answer;
+  abi_settle(error, status, &found);
+  return abi_leave_text(error, answer, NULL);
 }
 
 /* ---- codes ---- */
@@ -435,7 +426,8 @@ void abi_enter(strutlib_error **error) {
   pthread_mutex_unlock(&handler_lock);
 }
 
-void abi_leave(void) {
+void abi_leave(strutlib_error **error, strut_status status, const strut_error *what) {
+  if (status && error && !*error) abi_fail_with(error, status, what);
   pthread_mutex_lock(&handler_lock);
   if (--computing == 0) {
     gsl_error_handler_t *now = gsl_set_error_handler_off();
@@ -445,41 +437,56 @@ void abi_leave(void) {
   pthread_mutex_unlock(&handler_lock);
 }
 
+char *abi_leave_text(strutlib_error **error, char *text, const strut_error *what) {
+  strut_status failure = what && what->status ? what->status : STRUT_NO_MEMORY;
+  abi_leave(error, text ? STRUT_OK : failure, what);
+  return text;
+}
+
 /* ---- calls ---- */
 
-void abi_call_fail(abi_call *call, strut_status status, const strut_error *what) {
-  bool reported = !(what && what->message[0]) && call->messages->error.message[0];
-  abi_fail_with(call->error, status, reported ? &call->messages->error : what);
+abi_call abi_call_of(const strutlib_scene *scene, const strut_command *command,
+                     strutlib_control *control, strutlib_error **error) {
+  return (abi_call){.scene = scene,
+                    .arguments = {.command = command,
+                                  .model = scene->source->name,
+                                  .overrides = scene->settings,
+                                  .override_count = scene->setting_count},
+                    .control = control,
+                    .error = error};
 }
 
-strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
-                            const strut_command *command, const abi_pairs *options,
-                            strutlib_control *control, strutlib_error **error,
-                            abi_messages *messages) {
-  if (abi_lacks(error, scene, "scene")) return STRUT_USAGE;
-  const strut_arguments begun = {.command = command,
-                                 .model = scene->source->name,
-                                 .overrides = scene->settings,
-                                 .override_count = scene->setting_count};
-  return abi_call_begin_file(call, &begun, options, control, error, messages);
-}
-
-strut_status abi_call_begin_file(abi_call *call, const strut_arguments *begun,
-                                 const abi_pairs *options, strutlib_control *control,
-                                 strutlib_error **error, abi_messages *messages) {
-  *call = (abi_call){.error = error, .control = control, .messages = messages, .arguments = *begun};
-  if (abi_lacks_pairs(error, options->count, options->names, options->values)) return STRUT_USAGE;
-  call->listener = abi_listen(messages);
+strut_status abi_call_begin(abi_call *call, const abi_pairs *options) {
+  if (abi_lacks_pairs(call->error, options->count, options->names, options->values))
+    return STRUT_USAGE;
+  call->listener = abi_listen(&call->messages);
   call->arguments.listener = &call->listener;
-  strut_status status = STRUT_OK;
-  for (size_t i = 0; i < options->count && status == STRUT_OK; i++)
-    status = strut_argument_set(options->names[i], options->values[i], &call->arguments);
-  if (status == STRUT_OK && control && control->interrupt) {
-    abi_fail(error, STRUTLIB_INTERRUPTED, "interrupted before anything was computed");
-    return STRUT_INTERRUPTED;
+  for (size_t i = 0; i < options->count; i++) {
+    strut_status status =
+        strut_argument_set(options->names[i], options->values[i], &call->arguments);
+    if (status) return status;
   }
-  if (status != STRUT_OK) abi_call_fail(call, status, NULL);
-  return status;
+  if (!call->control || !call->control->interrupt) return STRUT_OK;
+  return strut_fail(&call->what, STRUT_INTERRUPTED, "interrupted before anything was computed");
+}
+
+void abi_call_leave(const abi_call *call, strut_status status) {
+  const strut_error *heard = &call->messages.error;
+  abi_leave(call->error, status, !call->what.message[0] && heard->message[0] ? heard : &call->what);
+}
+
+strutlib_result *abi_compute(abi_call *call, const abi_pairs *options, abi_work *work) {
+  abi_enter(call->error);
+  strutlib_result *result = abi_result_create(call->arguments.command);
+  strut_status status = result ? abi_call_begin(call, options) : STRUT_NO_MEMORY;
+  if (!status) status = work(call, result);
+  abi_call_leave(call, status);
+  if (!result) return NULL;
+  if (status) result->status = (int)status;
+  result->messages = call->messages;
+  if (call->complete) return result;
+  strutlib_result_free(result);
+  return NULL;
 }
 
 /* ---- options ---- */
