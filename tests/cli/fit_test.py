@@ -541,10 +541,10 @@ def refusals():
             ("d.x, noise: 0.1 mm", "80 mm, noise: 0.1 mm", "'d'"),
             ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{b.x: 80 mm, noise: 0.1 mm}",
              "refused.yaml:10:15: error: 3 parameters and alignments need as many numbers that count, found 1"),
-            ("over:", "ower:", "did you mean 'over'"),
             ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{compute: modes, frequncy_1: 3 Hz}", "did you mean 'frequency_1'?"),
+            ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{compute: modes, frequency_1: 3 kg}", "has another unit than its numbers\n"),
             ("decay.csv}", "unseen.csv, weights: w}", "need as many numbers that count, found 0"),
-            ("starts: 3", "starts: 0", "starts"),
+            ("over:", "ower:", "did you mean 'over'"), ("starts: 3", "starts: 0", "starts"),
             ("data:", "lowest: 2\ndata:", "no match of the fit uses 'lowest'"),
             ("time: d.t", "time: d.x", "time")):
         write("refused.yaml", "strut: 1\nstudy: refused\n" + good.replace(old, new))
