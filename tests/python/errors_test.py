@@ -83,12 +83,13 @@ class Errors(unittest.TestCase):
             lambda: _strut.Scene(),
             lambda: _strut.open("a", ("a",), ()),
             lambda: _strut.open_text("a", "b", (1,), (2,)),
+            lambda: strut.loads(b"strut: 1"),
             lambda: raw.call(_strut.Result(), "dance", (), (), None),
             lambda: raw.sweep(_strut.Result(), ("a",), 2, b"12345678", None, (), (), (), None),
             lambda: raw.sweep(_strut.Result(), ("a",), -1, memoryview(b""), None, (), (), (), None),
             lambda: raw.names(3),
             lambda: raw.array(None),
-            lambda: _strut.Result().json(),
+            _strut.Result().json,
         ):
             self.assertRaises((TypeError, ValueError), wrong)
 
@@ -101,9 +102,7 @@ class Errors(unittest.TestCase):
         self.assertEqual(caught.exception.result.status, "interrupted")
 
     def test_nothing_prints(self):
-        read, write = os.pipe()
-        kept = os.dup(1), os.dup(2)
-        printed = io.StringIO()
+        (read, write), kept, printed = os.pipe(), (os.dup(1), os.dup(2)), io.StringIO()
         try:
             os.dup2(write, 1), os.dup2(write, 2)
             with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
