@@ -17,15 +17,14 @@ CRAWLER = MODELS / "crawler/crawler.yaml"
 
 class Errors(unittest.TestCase):
     def test_all_mistakes_have_their_places(self):
-        text = "strut: 1\nnodes: {a: [0, 0], b: {positon: [1, 2]}}\nmembers: {q: 3}\n"
+        text = "strut: 1\rnodes: {a: [0, 0], b: {positon: [1, 2]}}\nmembers: {q: 3}\n"
         with self.assertRaises(strut.SceneError) as caught:
             strut.loads(text, name="arm.yaml")
         error = caught.exception
         self.assertEqual((error.file, error.line, error.column, error.length), ("arm.yaml", 2, 24, 7))
-        self.assertEqual(error.hint, "position")
+        self.assertEqual((error.hint, error.messages[0].source), ("position", text.splitlines()[1]))
         self.assertEqual(error.key, "nodes.b.positon")
-        self.assertEqual(len(error.messages), 2)
-        self.assertEqual(error.messages[1].line, 3)
+        self.assertEqual([message.line for message in error.messages], [2, 3])
         self.assertIn("arm.yaml:3:14: ", str(error))
         self.assertIn("^~~~~~~", error.report)
         self.assertEqual(error.status, "bad_scene")

@@ -13,6 +13,7 @@
 #include "engine/scene/study.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/read/read_scene.h"
+#include "parser/language/yaml/text.h"
 #include "parser/program/command/analyses.h"
 #include "parser/program/command/scene_options.h"
 
@@ -115,18 +116,13 @@ bool abi_lacks_texts(strutlib_error **error, size_t count, const char *const *te
 /* ---- located ones ---- */
 
 /* The line of a place, without its end, in the arena. */
-static const char *line_of(const char *text, size_t length, size_t line, strut_arena *arena) {
-  const char *at = text, *end = text + length;
-  if (!text || line == 0) return "";
-  for (; line > 1; line--) {
-    const char *next = memchr(at, '\n', (size_t)(end - at));
-    if (!next) return "";
-    at = next + 1;
-  }
-  const char *stop = memchr(at, '\n', (size_t)(end - at));
-  if (!stop) stop = end;
-  if (stop > at && stop[-1] == '\r') stop--;
-  return strut_arena_text(arena, at, (size_t)(stop - at));
+static const char *line_of(const strut_used_file *in, uint32_t line, strut_arena *arena) {
+  strut_cursor at = strut_cursor_begin(in->text ? in->text : "", in->text ? in->length : 0);
+  strut_cursor_to_line(&at, line);
+  size_t end = at.offset;
+  while (at.line == line && end < at.length && !strut_text_break(at.text + end, at.length - end))
+    end++;
+  return strut_arena_text(arena, at.text + at.offset, end - at.offset);
 }
 
 /* The word of "... did you mean 'WORD'?", in the arena, or NULL. */
@@ -178,12 +174,10 @@ static const char *key_of(const strut_document *document, strut_place place, str
 
 static bool fill_item(const strut_diagnostics *found, const strut_document *document,
                       const strut_diagnostic *from, strut_arena *arena, located *to) {
-  const strut_used_file *used = from->place.file > 0 ? &found->used[from->place.file - 1] : NULL;
-  const char *file = used ? used->file : found->file ? found->file : "";
+  const strut_used_file in = strut_diagnostics_text(found, from->place);
   to->text = strut_arena_text(arena, from->message, strlen(from->message));
-  to->file = strut_arena_text(arena, file, strlen(file));
-  to->source = line_of(used ? used->text : found->text, used ? used->length : found->length,
-                       from->place.line, arena);
+  to->file = strut_arena_text(arena, in.file, strlen(in.file));
+  to->source = line_of(&in, from->place.line, arena);
   to->hint = hint_of(from->message, arena);
   to->key = key_of(document, from->place, arena);
   to->line = from->place.line;
