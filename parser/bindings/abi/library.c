@@ -135,41 +135,30 @@ static const char *hint_of(const char *message, strut_arena *arena) {
   return end ? strut_arena_text(arena, at, (size_t)(end - at)) : NULL;
 }
 
-typedef struct key_search {
-  uint32_t line, column;
-  char path[512];
-  char best[512];
-} key_search;
-
-static bool is_behind(strut_place place, const key_search *self) {
-  return place.line > self->line || (place.line == self->line && place.column > self->column);
+static bool is_behind(const strut_tree *node, strut_place place) {
+  return node->place.line > place.line ||
+         (node->place.line == place.line && node->place.column > place.column);
 }
 
-/* Walks in the text's order, and keeps the path of the last value that begins at or before the place. */
-static void walk(const strut_tree *node, size_t used, key_search *self, int depth) {
-  const strut_tree *child = node->first;
-  bool map = node->kind == STRUT_TREE_MAP;
-  if (node->kind == STRUT_TREE_SCALAR || depth > 64) return;
-  for (uint32_t i = 0; i < node->count && child; i++) {
-    const strut_tree *key = map ? child : NULL, *value = map ? child->next : child;
-    if (!value || is_behind(key ? key->place : value->place, self)) return;
-    int more = key ? snprintf(self->path + used, sizeof self->path - used, "%s%s", used ? "." : "",
-                              key->text)
-                   : snprintf(self->path + used, sizeof self->path - used, "%s%u", used ? "." : "",
-                              (unsigned)i);
-    if (more < 0 || used + (size_t)more >= sizeof self->path) return;
-    memcpy(self->best, self->path, used + (size_t)more + 1);
-    walk(value, used + (size_t)more, self, depth + 1);
-    self->path[used] = '\0';
-    child = value->next;
-  }
-}
-
+/* The path of keys to the last value that begins at or before the place; NULL: memory is out. */
 static const char *key_of(const strut_document *document, strut_place place, strut_arena *arena) {
-  key_search s = {.line = place.line, .column = place.column};
-  if (!document->root || place.file != 0 || place.line == 0) return "";
-  walk(document->root, 0, &s, 0);
-  return strut_arena_text(arena, s.best, strlen(s.best));
+  const strut_tree *node = place.file == 0 && place.line > 0 ? document->root : NULL;
+  const char *path = "";
+  while (node && node->kind != STRUT_TREE_SCALAR && path) {
+    const strut_tree *last = NULL, *child = node->first;
+    bool map = node->kind == STRUT_TREE_MAP;
+    uint32_t i = 0;
+    for (; i < node->count && child && !is_behind(child, place); i++) {
+      last = child;
+      child = map ? child->next->next : child->next;
+    }
+    if (!last) break;
+    const char *dot = *path ? "." : "";
+    path = map ? strut_arena_format(arena, "%s%s%s", path, dot, last->text)
+               : strut_arena_format(arena, "%s%s%u", path, dot, (unsigned)i - 1);
+    node = map ? last->next : last;
+  }
+  return path;
 }
 
 static bool fill_item(const strut_diagnostics *found, const strut_document *document,
