@@ -125,46 +125,31 @@ static char *result_page(const strutlib_result *result, bool still, page_writer 
   return abi_leave_text(error, text, &what);
 }
 
-/* With the equilibria, or a remark where they cannot be found. */
-static char *scene_page(const strut_setup *setup, const strut_model *model, bool equilibria,
-                        const strut_flag *interrupt, page_writer *writer, strut_error *what) {
-  strut_equilibria all = {0};
-  strut_error remark = {.message = "No search for equilibria was made."};
-  const strut_equilibria_options options = {.interrupt = interrupt};
-  strut_status status = STRUT_OK;
-  char *text = NULL;
-  if (equilibria)
-    status = strut_equilibria_find(model, &setup->experiment, &options, &all, &remark);
-  strut_page page = {.model = model};
-  if (equilibria && status == STRUT_OK)
-    page.equilibria = &all;
-  else
-    page.remark = remark.message;
-  if (status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY)
-    *what = remark, what->status = status;
-  else
-    text = write_page(&page, setup, writer, what);
-  strut_equilibria_free(&all);
-  return text;
-}
-
-static char *open_scene_page(const strutlib_scene *scene, bool equilibria,
-                             const strutlib_control *control, page_writer *writer,
-                             strutlib_error **error) {
+/* With the equilibria, or a remark where they were not searched or cannot be found. */
+static char *scene_page(const strutlib_scene *scene, bool search, const strutlib_control *control,
+                        page_writer *writer, strutlib_error **error) {
+  const strut_equilibria_options options = {.interrupt = abi_interrupt_of(control)};
   strut_model *model = NULL;
+  strut_equilibria all = {0};
   strut_setup setup;
-  strut_error what = {0};
+  strut_error what = {0}, remark = {.message = "No search for equilibria was made."};
   char *text = NULL;
   if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
-  if (abi_setup(scene, STRUT_FOR_ANY_STATICS, &setup, error) == STRUT_OK) {
-    strut_status status = strut_resolve_start_equilibrium(&setup, &what);
-    if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &what);
-    if (status == STRUT_OK)
-      text = scene_page(&setup, model, equilibria, abi_interrupt_of(control), writer, &what);
-    strut_model_free(model);
-    strut_setup_free(&setup);
-  }
+  if (abi_setup(scene, STRUT_FOR_ANY_STATICS, &setup, error) != STRUT_OK)
+    return abi_leave_text(error, NULL, NULL);
+  strut_status status = strut_resolve_start_equilibrium(&setup, &what), found = STRUT_OK;
+  if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &what);
+  if (status == STRUT_OK && search)
+    found = strut_equilibria_find(model, &setup.experiment, &options, &all, &remark);
+  if (found == STRUT_INTERRUPTED || found == STRUT_NO_MEMORY)
+    what = remark, what.status = status = found;
+  strut_page page = {.model = model, .remark = remark.message};
+  if (search && found == STRUT_OK) page.equilibria = &all, page.remark = NULL;
+  if (status == STRUT_OK) text = write_page(&page, &setup, writer, &what);
+  strut_equilibria_free(&all);
+  strut_model_free(model);
+  strut_setup_free(&setup);
   return abi_leave_text(error, text, &what);
 }
 
@@ -174,7 +159,7 @@ static char *open_scene_page(const strutlib_scene *scene, bool equilibria,
   }                                                                                                \
   char *strutlib_scene_##WORD(const strutlib_scene *scene, int equilibria,                         \
                               strutlib_control *control, strutlib_error **error) {                 \
-    return open_scene_page(scene, equilibria != 0, control, WRITER, error);                        \
+    return scene_page(scene, equilibria != 0, control, WRITER, error);                             \
   }
 PAGES(html, false, strut_page_html)
 PAGES(page_data, true, strut_page_data)
