@@ -391,7 +391,11 @@ char *strut_values_text(const strut_value_rows *rows, const void *result, const 
   const char *before = width == STRUT_REPORT_LATEX ? "% " : "";
   strut_buffer text = {0};
   strut_c_locale locale = strut_c_locale_enter();
-  if (scene && *scene->name) strut_buffer_add(&text, "%s%s\n", before, scene->name);
+  for (const char *line = scene ? scene->name : ""; *line; line += strspn(line, "\n")) {
+    size_t length = strcspn(line, "\n");
+    strut_buffer_add(&text, "%s%.*s\n", before, (int)length, line);
+    line += length;
+  }
   strut_values_add_tables(&text, rows, &(strut_result_object){result, NULL, scene, 0},
                           &(strut_table_page){width, most, 6});
   strut_c_locale_leave(locale);

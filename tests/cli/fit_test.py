@@ -364,16 +364,14 @@ def ranges():
 
 
 def judged():
-    """Starts that all end far off are no wrong model's; a wrong noise; a motion that is the same a period later, or
-    that another one, in the range, goes through at the same few times."""
+    """Starts far off, wrong noises, motions that are the same a period later or, of others, at the same few times."""
     late, begin = times(6, 200), times(0, 60)
     wrong, right, both = "the model does not explain the data", "identified", "c: {from: 0.01, to: 0.5}, k: {from: 20, to: 300}"
     few, noise, delay = "starts that end there: 0 of 3: give more starts", ", noise: 0.1 mm", ", align: {delay: free}"
     all_found = {}
     for name, c, at, motion, over, match, starts, verdict, reason in (
             ("far", 3, late, lambda t: swing(t, 0.05), both, noise, 3, "starts disagree", ("times the noise", few)),
-            ("flat", 3, late, lambda t: swing(t, 0.05), both.replace("0.5", "5"), noise, 3, "starts disagree",
-             ("the parameters hardly matter there",)),
+            ("flat", 3, late, lambda t: swing(t, 0.05), both.replace("0.5", "5"), noise, 3, "starts disagree", ("the parameters hardly matter there",)),
             ("far-unknown", 3, late, lambda t: swing(t, 0.05), both, "", 3, "starts disagree", ("correlated", few)),
             ("dry", 3, times(0, 200), dry, both, noise, 3, wrong, ("with 198 degrees of freedom",)),
             ("dry-once", 3, times(0, 200), dry, both, noise, 1, wrong, ("a single start does not show",)),
@@ -399,6 +397,8 @@ def judged():
           "excess" not in all_found["period"][1]["matches"][0], "a noise that is three times too large")
     found, said = all_found["period"]
     identified(found, k=100.0)
+    decay(noise=0, at=begin)
+    identified(fit("noiseless", study("swings", "decay", both.replace("0.5", "5"), "place: d.x" + noise, 1))[0], c=3.0, k=100.0)
     decay(at=begin)
     unit = study("swings", "decay", "k: {from: 20, to: 300}", "place: d.x" + noise, 1).replace("csv}", "csv, units: {x: cm}}")
     check("times those of 'x [cm]': check this unit" in fit("unit", unit, code=5)[1]["reason"], "numbers in m as cm")
@@ -541,10 +541,10 @@ def refusals():
             ("d.x, noise: 0.1 mm", "80 mm, noise: 0.1 mm", "'d'"),
             ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{b.x: 80 mm, noise: 0.1 mm}",
              "refused.yaml:10:15: error: 3 parameters and alignments need as many numbers that count, found 1"),
-            ("over:", "ower:", "did you mean 'over'"),
             ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{compute: modes, frequncy_1: 3 Hz}", "did you mean 'frequency_1'?"),
+            ("{time: d.t, b.x: d.x, noise: 0.1 mm}", "{compute: modes, frequency_1: 3 kg}", "has another unit than its numbers\n"),
             ("decay.csv}", "unseen.csv, weights: w}", "need as many numbers that count, found 0"),
-            ("starts: 3", "starts: 0", "starts"),
+            ("over:", "ower:", "did you mean 'over'"), ("starts: 3", "starts: 0", "starts"),
             ("data:", "lowest: 2\ndata:", "no match of the fit uses 'lowest'"),
             ("time: d.t", "time: d.x", "time")):
         write("refused.yaml", "strut: 1\nstudy: refused\n" + good.replace(old, new))

@@ -135,13 +135,13 @@ for count, end in ((1, "used up"), (2, "used up"), (3, "enumerated"), (4, "enume
     found = answer("sweep", "names.yaml", "-o", f"names-{count}")
     check(found["searches"][0]["end"] == end and found["searches"][0]["evaluations"] == min(count, 3) and
           (count < 3 or found["best"][0]["values"] == {"start": "high"}), f"{count} evaluations of names: {found}")
-write("names.yaml", NAMES % ("[low, midle]", 1))
-run("sweep", "names.yaml", "-o", "names", code=2, err="did you mean 'middle'?")
+for text, word in ((NAMES, "middle"), (NAMES.replace("pull", "work"), "drive_work")):
+    write("names.yaml", text % ("[low, midle]" if text is NAMES else "[low, high]", 1))
+    run("sweep", "names.yaml", "-o", "names", code=2, err=f"did you mean '{word}'?")
 found = search("outer", "axes: [{mass: [1 kg, 2 kg, 3 kg]}]\nsearch: {" + GOAL + ", " + OVER + "}\n")
 for item, mass in zip(found["best"], (1, 2, 3)):
     check(abs(item["values"]["stiffness"] / (mass * wanted) - 1) < 1e-5, f"mass {mass}: {item}")
-check(len(rows("outer", "best.csv")) == 3 and os.path.exists(path("outer", "best-3.yaml")),
-      "one best for each point of the axes")
+check(len(rows("outer", "best.csv")) == 3 and os.path.exists(path("outer", "best-3.yaml")), "one best for each of the axes")
 
 # ---- two goals: the front has a formula, |f - 1 Hz| + |f - 2 Hz| = 1 Hz between the two ----
 

@@ -37,7 +37,7 @@ static strut_status try_ends(strut_study_file *file) {
 
 /* What a case calls the file of a place. */
 static const char *file_of(const strut_diagnostics *found, strut_place place) {
-  const char *name = strut_diagnostics_file(found, place), *dot = strrchr(name, '.');
+  const char *name = strut_diagnostics_text(found, place).file, *dot = strrchr(name, '.');
   return dot && strcmp(dot, ".csv") == 0 ? "table " : strstr(name, "/models/") ? "model " : "";
 }
 

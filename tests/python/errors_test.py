@@ -17,15 +17,14 @@ CRAWLER = MODELS / "crawler/crawler.yaml"
 
 class Errors(unittest.TestCase):
     def test_all_mistakes_have_their_places(self):
-        text = "strut: 1\nnodes: {a: [0, 0], b: {positon: [1, 2]}}\nmembers: {q: 3}\n"
+        text = "strut: 1\rnodes: {a: [0, 0], b: {positon: [1, 2]}}\nmembers: {q: 3}\n"
         with self.assertRaises(strut.SceneError) as caught:
             strut.loads(text, name="arm.yaml")
         error = caught.exception
         self.assertEqual((error.file, error.line, error.column, error.length), ("arm.yaml", 2, 24, 7))
-        self.assertEqual(error.hint, "position")
+        self.assertEqual((error.hint, error.messages[0].source), ("position", text.splitlines()[1]))
         self.assertEqual(error.key, "nodes.b.positon")
-        self.assertEqual(len(error.messages), 2)
-        self.assertEqual(error.messages[1].line, 3)
+        self.assertEqual([message.line for message in error.messages], [2, 3])
         self.assertIn("arm.yaml:3:14: ", str(error))
         self.assertIn("^~~~~~~", error.report)
         self.assertEqual(error.status, "bad_scene")
@@ -83,12 +82,13 @@ class Errors(unittest.TestCase):
             lambda: _strut.Scene(),
             lambda: _strut.open("a", ("a",), ()),
             lambda: _strut.open_text("a", "b", (1,), (2,)),
+            lambda: strut.loads(b"strut: 1"),
             lambda: raw.call(_strut.Result(), "dance", (), (), None),
             lambda: raw.sweep(_strut.Result(), ("a",), 2, b"12345678", None, (), (), (), None),
             lambda: raw.sweep(_strut.Result(), ("a",), -1, memoryview(b""), None, (), (), (), None),
             lambda: raw.names(3),
             lambda: raw.array(None),
-            lambda: _strut.Result().json(),
+            _strut.Result().json,
         ):
             self.assertRaises((TypeError, ValueError), wrong)
 
@@ -101,9 +101,7 @@ class Errors(unittest.TestCase):
         self.assertEqual(caught.exception.result.status, "interrupted")
 
     def test_nothing_prints(self):
-        read, write = os.pipe()
-        kept = os.dup(1), os.dup(2)
-        printed = io.StringIO()
+        (read, write), kept, printed = os.pipe(), (os.dup(1), os.dup(2)), io.StringIO()
         try:
             os.dup2(write, 1), os.dup2(write, 2)
             with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):

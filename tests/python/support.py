@@ -61,4 +61,5 @@ def skip_without(*modules: str) -> None:
 
 
 def main() -> None:
+    sys.unraisablehook = lambda left: (print(left), os._exit(1))  # such as a file that is left open
     unittest.main(argv=sys.argv[:1], verbosity=1)

@@ -38,9 +38,9 @@ async function openPage(browser, { hash = "", width = 1280, height = 900, dark =
   return { page, context, faults };
 }
 
-/** Waits until nothing is computed. */
+/** Waits until a scene is open and nothing is computed. */
 async function idle(page) {
-  await page.waitForFunction(() => window.strutPlayground && !window.strutPlayground.busy, { timeout: LONG });
+  await page.waitForFunction(() => document.getElementById("file-name").textContent && !window.strutPlayground.busy, { timeout: LONG });
   await page.evaluate(() => window.strut.ready);
 }
 

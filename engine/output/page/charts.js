@@ -240,16 +240,10 @@
     };
 
     function createBox() {
-      const make = (className) => {
-        const part = document.createElement("div");
-        part.className = className;
-        return part;
-      };
-      const chart = { box: make(""), title: make("chart-title"), plot: make("plot"),
-        cursor: make("cursor"), graph: null, kind: null };
-      const holder = make("chart");
-      holder.append(chart.plot, chart.cursor);
-      chart.box.append(chart.title, holder);
+      const part = (className, ...children) => page.make("div", { className }, ...children);
+      const title = part("chart-title"), plot = part("plot"), cursor = part("cursor");
+      const chart = { box: part("", title, part("chart", plot, cursor)), title, plot, cursor,
+        graph: null, kind: null };
       seekByDragging(chart);
       return chart;
     }
@@ -259,12 +253,9 @@
       chart.title.replaceChildren(kind.name + " in " + kind.prefix.text + kind.unit + (few
         ? " (the " + kind.curves.length + " of " + kind.all + " that vary most)" : ""));
       kind.curves.forEach((curve, i) => {
-        const span = document.createElement("span"), swatch = document.createElement("i");
-        const name = document.createElement("bdi");
+        const swatch = page.make("i"), name = curve.name + (curve.dots ? " (dots: measured)" : "");
         swatch.style.background = COLOURS[i % COLOURS.length];
-        name.textContent = curve.name + (curve.dots ? " (dots: measured)" : "");
-        span.append(swatch, name);
-        chart.title.append(span);
+        chart.title.append(page.make("span", {}, swatch, page.make("bdi", { textContent: name })));
       });
     }
 
@@ -328,15 +319,12 @@
 
     function offerKinds() {
       choices.replaceChildren(...kinds.map((kind, i) => {
-        const label = document.createElement("label"), box = document.createElement("input");
-        box.type = "checkbox";
-        box.checked = isShown(kind, i);
+        const box = page.make("input", { type: "checkbox", checked: isShown(kind, i) });
         box.addEventListener("change", () => {
           chosen.set(kind.name, box.checked);
           update();
         });
-        label.append(box, " " + kind.name);
-        return label;
+        return page.make("label", {}, box, " " + kind.name);
       }));
     }
 

@@ -125,15 +125,13 @@
     return (Array.from(safe).slice(0, LONGEST).join("") || "strut") + ending;
   };
 
-  function save(blob, name) {
-    const link = document.createElement("a"), url = URL.createObjectURL(blob);
-    link.href = url;
-    link.download = name;
+  page.save = function (blob, name) {
+    const url = URL.createObjectURL(blob), link = page.make("a", { href: url, download: name });
     document.body.append(link);
     link.click();
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 60000);
-  }
+  };
 
   /* A cell as RFC 4180 has it. */
   const cell = (text) =>
@@ -160,7 +158,7 @@
       const { width, height, title, paint } = shown.stage();
       const context = page.svgContext(width, height);
       paint({ context, width, height });
-      save(new Blob([context.svg(title, page.theme().paper)], { type: "image/svg+xml" }),
+      page.save(new Blob([context.svg(title, page.theme().paper)], { type: "image/svg+xml" }),
         nameOf(".svg"));
     });
     on("save-png", () => {
@@ -172,14 +170,14 @@
       context.fillStyle = page.theme().paper;
       context.fillRect(0, 0, width, height);
       paint({ context, width, height });
-      canvas.toBlob((blob) => save(blob, nameOf(".png")), "image/png");
+      canvas.toBlob((blob) => page.save(blob, nameOf(".png")), "image/png");
     });
     on("save-csv", () =>
-      save(new Blob([page.csvText(shown.csv())], { type: "text/csv" }), nameOf(".csv")));
+      page.save(new Blob([page.csvText(shown.csv())], { type: "text/csv" }), nameOf(".csv")));
     on("save-json", () => {
       const [run, beside] = shown.runs().map(numbersOf);
       const text = JSON.stringify(beside ? { ...run, beside } : run, null, 1);
-      save(new Blob([text + "\n"], { type: "application/json" }), nameOf(".json"));
+      page.save(new Blob([text + "\n"], { type: "application/json" }), nameOf(".json"));
     });
   };
 })(window.strutPage);

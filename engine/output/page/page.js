@@ -90,11 +90,9 @@
       clock.textContent = run.made.clock[frame];
       return;
     }
-    const time = document.createElement("b");
-    const count = document.createElement("span"), last = run.motion.frames - 1;
-    time.textContent = page.timeText(run.time[frame], decimals, run.time[last]) + " s";
-    count.textContent = "frame " + (frame + 1) + " of " + (last + 1);
-    clock.replaceChildren(time, count);
+    const last = run.motion.frames - 1, time = page.timeText(run.time[frame], decimals, run.time[last]);
+    clock.replaceChildren(page.make("b", { textContent: time + " s" }),
+      page.make("span", { textContent: "frame " + (frame + 1) + " of " + (last + 1) }));
   }
 
   function onFrame(frame) {

@@ -13,14 +13,8 @@
   }
 
   function makeRow(kind, texts) {
-    const line = document.createElement("tr");
-    for (const text of texts) {
-      const cell = document.createElement(kind);
-      cell.dir = "auto";
-      cell.textContent = text === null ? "\u2013" : page.micro(text);
-      line.append(cell);
-    }
-    return line;
+    return page.make("tr", {}, ...texts.map((text) => page.make(kind,
+      { dir: "auto", textContent: text === null ? "\u2013" : page.micro(text) })));
   }
 
   /* A table of rows {label, value}; with a second run a second column, and a mark where they differ. */
@@ -116,23 +110,15 @@
   }
 
   function createCard(data, equilibrium, index) {
-    const card = document.createElement("button"), canvas = document.createElement("canvas");
-    const name = document.createElement("b"), energy = document.createElement("span");
-    const verdict = document.createElement("span");
-    card.type = "button";
-    card.className = "card";
-    card.setAttribute("aria-pressed", "false");
-    name.dir = verdict.dir = "auto";
-    name.textContent = equilibrium.name;
-    energy.textContent = page.quantity(equilibrium.energy, "J", 7) + ", " + equilibrium.label;
-    verdict.textContent = page.micro(equilibrium.verdict || "");
-    card.append(canvas, name, energy, verdict);
-    for (const pass of passesOf(data, index)) {
-      const line = document.createElement("span"), to = document.createElement("bdi");
-      to.textContent = data.equilibria[pass.to].name;
-      line.append("\u2192 ", to, ": " + page.quantity(pass.height, "J", 4));
-      card.append(line);
-    }
+    const { name, label, verdict } = equilibrium, canvas = page.make("canvas");
+    const energy = page.quantity(equilibrium.energy, "J", 7) + ", " + label;
+    const passes = passesOf(data, index).map((pass) => page.make("span", {}, "\u2192 ",
+      page.make("bdi", { textContent: data.equilibria[pass.to].name }),
+      ": " + page.quantity(pass.height, "J", 4)));
+    const card = page.make("button", { type: "button", className: "card", "aria-pressed": "false" },
+      canvas, page.make("b", { dir: "auto", textContent: name }),
+      page.make("span", { textContent: energy }),
+      page.make("span", { dir: "auto", textContent: page.micro(verdict || "") }), ...passes);
     return { card, canvas, equilibrium };
   }
 

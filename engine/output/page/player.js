@@ -3,6 +3,16 @@
 "use strict";
 window.strutPage = {};
 (function (page) {
+  /* An element with children and with properties, or attributes where their names have a dash. */
+  page.make = function (tag, properties = {}, ...children) {
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(properties))
+      if (name.includes("-") || name === "role") element.setAttribute(name, value);
+      else element[name] = value;
+    element.append(...children);
+    return element;
+  };
+
   /* The bytes of a text in base64, deflated (raw). */
   page.inflate = async function (base64) {
     const text = atob(base64);
@@ -156,12 +166,8 @@ window.strutPage = {};
       event.preventDefault();
     }
 
-    for (const value of SPEEDS) {
-      const option = document.createElement("option");
-      option.value = String(value);
-      option.textContent = value >= 1 ? value + "\u00d7" : "1/" + Math.round(1 / value);
-      speed.append(option);
-    }
+    speed.append(...SPEEDS.map((value) => page.make("option", { value,
+      textContent: value >= 1 ? value + "\u00d7" : "1/" + Math.round(1 / value) })));
     speed.addEventListener("change", () => { speedChosen = true; });
     scrub.addEventListener("input", () => player.seek(Number(scrub.value)));
     button.addEventListener("click", player.toggle);

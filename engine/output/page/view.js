@@ -95,6 +95,17 @@
     for (let j = 0; j < s.count; j++) s.order[next[s.bucket[j]]++] = j;
   }
 
+  /* The path through points [[x, y], ...]. */
+  function outline(c, points, closed = false) {
+    c.beginPath();
+    points.forEach(([x, y], k) => c[k ? "lineTo" : "moveTo"](x, y));
+    if (closed) c.closePath();
+  }
+  function circle(c, x, y, radius) {
+    c.beginPath();
+    c.arc(x, y, radius, 0, 2 * Math.PI);
+  }
+
   function trace(c, s, first, last, px, py) {
     c.beginPath();
     for (let k = first; k < last; k++) {
@@ -127,8 +138,7 @@
     c.fillStyle = options.theme.accent;
     c.globalAlpha = 0.15;
     for (const cell of data.cells) {
-      c.beginPath();
-      for (const n of cell.nodes) c.lineTo(px[n], py[n]);
+      outline(c, cell.nodes.map((n) => [px[n], py[n]]));
       c.fill();
     }
     c.globalAlpha = 1;
@@ -142,14 +152,11 @@
     for (const collision of s.data.collisions) {
       c.lineWidth = collision.thickness * scale;
       for (const n of collision.nodes) {
-        c.beginPath();
-        c.arc(px[n], py[n], 0.5 * c.lineWidth, 0, 2 * Math.PI);
+        circle(c, px[n], py[n], 0.5 * c.lineWidth);
         c.fill();
       }
       for (const m of collision.members) {
-        c.beginPath();
-        c.moveTo(px[s.from[m]], py[s.from[m]]);
-        c.lineTo(px[s.to[m]], py[s.to[m]]);
+        outline(c, [s.from[m], s.to[m]].map((n) => [px[n], py[n]]));
         c.stroke();
       }
     }
@@ -192,16 +199,10 @@
       c.save();
       c.translate(px[i], py[i]);
       c.rotate(turn);
-      c.beginPath();
-      c.moveTo(0, 0);
-      c.lineTo(6.5, 11);
-      c.lineTo(-6.5, 11);
-      c.closePath();
+      outline(c, [[0, 0], [6.5, 11], [-6.5, 11]], true);
       c.fill();
       c.stroke();
-      c.beginPath();
-      c.moveTo(-9, both ? 11 : 14.5);
-      c.lineTo(9, both ? 11 : 14.5);
+      outline(c, [-9, 9].map((x) => [x, both ? 11 : 14.5]));
       c.stroke();
       c.restore();
     });
@@ -216,8 +217,7 @@
     c.lineWidth = 1.2;
     const radius = options.small ? 1.8 : 3.2;
     for (let i = 0; i < count; i++) {
-      c.beginPath();
-      c.arc(px[i], py[i], radius, 0, 2 * Math.PI);
+      circle(c, px[i], py[i], radius);
       c.fill();
       c.stroke();
     }
@@ -262,18 +262,12 @@
     const ends = [[sx(left), sy(yAt(left))], [sx(right), sy(yAt(right))]];
     c.fillStyle = theme.line;
     c.globalAlpha = 0.35;
-    c.beginPath();
-    c.moveTo(ends[0][0], ends[0][1]);
-    c.lineTo(ends[1][0], ends[1][1]);
-    c.lineTo(ends[1][0], ends[1][1] + 4 * height);
-    c.lineTo(ends[0][0], ends[0][1] + 4 * height);
+    outline(c, [...ends, ...[ends[1], ends[0]].map(([x, y]) => [x, y + 4 * height])]);
     c.fill();
     c.globalAlpha = 1;
     c.strokeStyle = theme.soft;
     c.lineWidth = 1.2;
-    c.beginPath();
-    c.moveTo(ends[0][0], ends[0][1]);
-    c.lineTo(ends[1][0], ends[1][1]);
+    outline(c, ends);
     c.stroke();
     if (options.small) return;
     const step = roundLength(110 / camera.scale);
@@ -284,9 +278,7 @@
     c.textBaseline = "middle";
     for (let k = Math.ceil(left / step); k * step <= right; k++) {
       const x = sx(k * step), y = sy(yAt(k * step));
-      c.beginPath();
-      c.moveTo(x, y);
-      c.lineTo(x + 6 * into[0], y + 6 * into[1]);
+      outline(c, [[x, y], [x + 6 * into[0], y + 6 * into[1]]]);
       c.stroke();
       if (x < 26 || x > width - 26) continue; /* no half words at the edges */
       c.fillText(page.quantity(k * step, "m", 4), x + 26 * into[0], y + 14 * into[1]);
@@ -312,8 +304,7 @@
       c.globalAlpha = 1;
       c.strokeStyle = theme.soft;
       c.lineWidth = 1.2;
-      c.beginPath();
-      points.forEach((p, k) => c[k ? "lineTo" : "moveTo"](...place(...p)));
+      outline(c, points.map((p) => place(...p)));
       c.stroke();
     }
   }
@@ -335,14 +326,10 @@
     const length = Math.hypot(x2 - x1, y2 - y1);
     if (length < 2) return;
     const ux = (x2 - x1) / length, uy = (y2 - y1) / length, head = Math.min(9, length);
-    c.beginPath();
-    c.moveTo(x1, y1);
-    c.lineTo(x2 - 0.8 * head * ux, y2 - 0.8 * head * uy);
+    outline(c, [[x1, y1], [x2 - 0.8 * head * ux, y2 - 0.8 * head * uy]]);
     c.stroke();
-    c.beginPath();
-    c.moveTo(x2, y2);
-    c.lineTo(x2 - head * ux - 0.4 * head * uy, y2 - head * uy + 0.4 * head * ux);
-    c.lineTo(x2 - head * ux + 0.4 * head * uy, y2 - head * uy - 0.4 * head * ux);
+    outline(c, [[x2, y2], ...[0.4, -0.4].map((side) =>
+      [x2 - head * (ux + side * uy), y2 - head * (uy - side * ux)])]);
     c.fill();
   }
 
@@ -488,9 +475,7 @@
       c.strokeStyle = theme[name];
       c.lineWidth = WIDTHS[kind];
       c.setLineDash(DASHES[kind]);
-      c.beginPath();
-      c.moveTo(right - 26, y);
-      c.lineTo(right, y);
+      outline(c, [[right - 26, y], [right, y]]);
       c.stroke();
       c.setLineDash([]);
       c.fillStyle = theme.soft;

@@ -106,7 +106,7 @@ typedef struct strut_fit_result {
   strut_arena arena;
 } strut_fit_result;
 
-/** A series that does not fit the model, or NULL; and the table that its match has, or nothing. */
+/** A series that does not fit the model, or NULL; and the table of its match, which has no such column, or nothing. */
 typedef struct strut_fit_refusal {
   const strut_fit_series *series;
   strut_sweep_plan table;

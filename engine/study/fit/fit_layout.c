@@ -7,12 +7,12 @@
 #include "engine/study/fit/fit_parts.h"
 #include "engine/study/sweep/sweep.h"
 
-/* The number of a column among those of numbers, or -1. */
-static int64_t find_number(const strut_sweep_plan *plan, const char *name) {
+/* The column of numbers of a name, or NULL. */
+static const strut_slot_column *find_column(const strut_sweep_plan *plan, const char *name) {
   for (size_t i = plan->axis_columns; i < plan->column_count; i++)
     if (!plan->columns[i].word && strcmp(plan->columns[i].name, name) == 0)
-      return (int64_t)strut_slot_place(plan->columns, i);
-  return -1;
+      return &plan->columns[i];
+  return NULL;
 }
 
 /* The place whose coordinate a quantity is, if it is one, and which. */
@@ -33,27 +33,33 @@ static int axis_of(const strut_quantity_definition *quantity, strut_column *plac
 static strut_status refuse(strut_fit_layout *layout, size_t m, size_t s, const char *why,
                            strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  layout->refused = (strut_fit_refusal){&match->series[s], layout->parts[m].table};
-  layout->parts[m].table = (strut_sweep_plan){0};
+  strut_sweep_plan *table = &layout->parts[m].table;
+  layout->refused.series = &match->series[s];
+  if (strut_slot_named(table->columns, table->column_count, match->series[s].of) ==
+      table->column_count) { /* it may be misspelt */
+    layout->refused.table = *table;
+    *table = (strut_sweep_plan){0};
+  }
   return strut_fail(error, STRUT_BAD_SCENE, "match '%.60s': '%.80s' %s", match->name,
                     match->series[s].of, why);
 }
 
-/* Why a series does not fit the model; NULL: it does. `column`: its number among those of a TABLE. */
-static const char *find_flaw(const strut_fit_layout *layout, size_t m, size_t s,
-                             const strut_setup *setup, int64_t column) {
-  const strut_fit_match *match = &layout->fit->matches[m];
-  const char *over = layout->plan->study->path.over;
-  bool curve = match->kind == STRUT_FIT_CURVE;
-  if (match->kind == STRUT_FIT_TABLE)
-    return column < 0 ? "is no column of numbers of that computation" : NULL;
+/* Why a series does not fit the model; NULL: it does. `column`: that of a TABLE, whose numbers may have no unit. */
+static const char *find_flaw(const strut_fit_layout *layout, const strut_fit_match *match,
+                             const strut_fit_series *series, const strut_setup *setup,
+                             const strut_slot_column *column) {
+  const char *over = layout->plan->study->path.over, *unit = "N";
+  bool curve = match->kind == STRUT_FIT_CURVE, table = match->kind == STRUT_FIT_TABLE;
+  if (table && !column) return "is no column of numbers of that computation";
   if (curve && !setup->experiment.stage_count &&
       !(over && strut_coordinate_find(&setup->scene, over) >= 0))
     return "needs the study's 'path' over a coordinate, such as {over: b.y, until: 5 mm} for "
            "displacements up to 5 mm";
-  const char *unit =
-      curve ? "N" : strut_fit_quantity(&setup->experiment, match->series[s].of)->unit;
-  return strcmp(unit, match->series[s].unit) == 0 ? NULL : "has another unit than its numbers";
+  if (table)
+    unit = strcmp(series->unit, "1") == 0 ? series->unit : column->unit;
+  else if (!curve)
+    unit = strut_fit_quantity(&setup->experiment, series->of)->unit;
+  return strcmp(unit, series->unit) == 0 ? NULL : "has another unit than its numbers";
 }
 
 /* What the series of a match are in the model. */
@@ -68,11 +74,16 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     return strut_no_memory(error, "");
   layout->parts[m].sources = sources;
   for (size_t s = 0; s < match->series_count; s++) {
-    const char *of = match->series[s].of;
-    sources[s] = (strut_fit_source){-1, -1, find_number(&layout->parts[m].table, of)};
-    const char *flaw = find_flaw(layout, m, s, setup, sources[s].column);
+    const strut_fit_series *series = &match->series[s];
+    const strut_sweep_plan *table = &layout->parts[m].table;
+    const strut_slot_column *column = find_column(table, series->of);
+    const char *flaw = find_flaw(layout, match, series, setup, column);
     if (flaw) return refuse(layout, m, s, flaw, error);
-    if (moves) sources[s].axis = axis_of(strut_fit_quantity(&setup->experiment, of), &places[s]);
+    sources[s] = (strut_fit_source){-1, -1, 0};
+    if (column)
+      sources[s].column = strut_slot_place(table->columns, (size_t)(column - table->columns));
+    if (moves)
+      sources[s].axis = axis_of(strut_fit_quantity(&setup->experiment, series->of), &places[s]);
     for (size_t k = 0; k < s && sources[s].axis >= 0; k++)
       if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
           places[k].item == places[s].item)

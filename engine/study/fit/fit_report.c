@@ -18,6 +18,9 @@ static const double RARE = 1e-4;
 /* Nor are successive residuals that are correlated by so many standard errors. */
 static const double CORRELATED = 5.0;
 
+/* But where the squares of all sum up to so little, they put no parameter off by more than a tenth of its error. */
+static const double NEGLIGIBLE = 0.01;
+
 /* Numbers that differ so many times from the model's may have another unit. */
 static const double MUCH = 5.0;
 
@@ -139,7 +142,8 @@ void strut_fit_find_flaw(const strut_fit_layout *layout, strut_fit_result *resul
                  sqrt(square / freedom), square, freedom);
   }
   for (size_t m = 0; m < matches && !*flaw; m++)
-    if (fabs(result->residuals[m].lag) > CORRELATED && result->scale > STRUT_FIT_EXACT)
+    if (fabs(result->residuals[m].lag) > CORRELATED &&
+        (known ? sum > NEGLIGIBLE : result->scale > STRUT_FIT_EXACT))
       flaw = SAY(result, "successive residuals of '%.40s' are correlated, by %.3g standard errors",
                  result->residuals[m].match->name, result->residuals[m].lag);
   result->reason = flaw;

@@ -140,47 +140,48 @@ typedef struct abi_array {
 /** Row by row: the last index runs first. */
 abi_array abi_array_of(const char *name, const char *unit, const double *data, int dimensions,
                        const size_t *shape);
+/** Shows an array; 1, or 0 where there is none or an argument is NULL. */
+int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
+                   size_t *stride);
 
+/** Arrays, and what else their handle owns. Zero-initialise. */
 typedef struct abi_arrays {
   abi_array *items; /* (count) of strut_allocate */
   size_t count, capacity;
+  strut_arena arena;
 } abi_arrays;
 
-enum { ABI_SCENE_ARRAYS = 9 };
+/** Adds an array with copies of its texts. NULL: memory is out. */
+const abi_array *abi_add_array(abi_arrays *list, const abi_array *array);
+/** An array (count) or (count, components) to be filled in, zeros at first; NULL: memory is out. */
+double *abi_new_array(abi_arrays *list, const char *name, const char *unit, size_t count,
+                      size_t components);
+/** By name, or NULL. */
+const abi_array *abi_find_array(const abi_arrays *list, const char *name);
+void abi_arrays_free(abi_arrays *list);
 
 struct strutlib_scene {
   abi_source *source;
-  strut_setting *settings; /* (setting_count) in the arena */
+  strut_setting *settings; /* (setting_count) in the arena of the arrays */
   size_t setting_count;
   strut_setup setup; /* as strut_open_model reads it for any purpose */
   abi_messages messages;
-  abi_array arrays[ABI_SCENE_ARRAYS];
+  abi_arrays arrays;
   pthread_mutex_t lock; /* of the tree, which is made when it is first asked for */
   abi_tree *tree;
-  strut_arena arena;
 };
 
 /** Reads the scene again for a purpose: what a call may change. Release it by strut_setup_free. */
 strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut_setup *setup,
                        strutlib_error **error);
-/** Shows an array; 1, or 0 where an argument is NULL. */
-int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
-                   size_t *stride);
-
 /* ---- calls ---- */
-
-/** A call under way. Stays where it is. */
-typedef struct abi_call {
-  strutlib_error **error;
-  strutlib_control *control;
-  strut_arguments arguments;
-  strut_listener listener;
-  abi_messages *messages;
-} abi_call;
 
 /** Clears *error. For calls that compute: the host's GSL handler sleeps until abi_leave. */
 void abi_enter(strutlib_error **error);
-void abi_leave(void);
+/** The end of such a call. Of one that failed *error says why, if it does not yet: `what` (or NULL), or the status. */
+void abi_leave(strutlib_error **error, strut_status status, const strut_error *what);
+/** The same of a call that returns a text of strut_allocate; NULL is a failure, of memory unless `what` says more. */
+char *abi_leave_text(strutlib_error **error, char *text, const strut_error *what);
 
 /** A call's options, as pairs of texts. */
 typedef struct abi_pairs {
@@ -188,20 +189,39 @@ typedef struct abi_pairs {
   const char *const *names, *const *values;
 } abi_pairs;
 
-/**
- * Begins a call: reads its options by the command's table, into messages of the result. STRUT_OK, or the
- * status with *error filled, as with STRUT_INTERRUPTED where the control is.
- */
-strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
-                            const strut_command *command, const abi_pairs *options,
-                            strutlib_control *control, strutlib_error **error,
-                            abi_messages *messages);
-/** The same of a call that names a model or study: `begun` has command, model and settings. */
-strut_status abi_call_begin_file(abi_call *call, const strut_arguments *begun,
-                                 const abi_pairs *options, strutlib_control *control,
-                                 strutlib_error **error, abi_messages *messages);
-/** Fills *error of a call that failed, by what its listener heard or by `what`. */
-void abi_call_fail(abi_call *call, strut_status status, const strut_error *what);
+/** A call with options under way. Stays where it is. */
+typedef struct abi_call {
+  const strutlib_scene *scene; /* NULL: of a file */
+  strut_arguments arguments;
+  strutlib_control *control; /* may be NULL */
+  strutlib_error **error;
+  strut_listener listener;
+  abi_messages messages; /* what it heard */
+  strut_error what;      /* why it failed, unless it heard that or *error says it */
+  bool complete;         /* there is a result, in spite of a failure, too */
+} abi_call;
+
+/** A call of a scene, as yet without options. */
+abi_call abi_call_of(const strutlib_scene *scene, const strut_command *command,
+                     strutlib_control *control, strutlib_error **error);
+/** Reads its options by the command's table. STRUT_INTERRUPTED where the control is. */
+strut_status abi_call_begin(abi_call *call, const abi_pairs *options);
+/** abi_leave with what the call knows. */
+void abi_call_leave(const abi_call *call, strut_status status);
+
+/** What a call computes into its result. Where it fails, it fills call->what or *call->error, or the listener heard. */
+typedef strut_status abi_work(abi_call *call, strutlib_result *result);
+/** A whole call: the result, which is there only if it is complete. */
+strutlib_result *abi_compute(abi_call *call, const abi_pairs *options, abi_work *work);
+/** The function of the header that is called as all of STRUTLIB_CALLS. */
+#define ABI_CALL(NAME, WORK)                                                                       \
+  strutlib_result *strutlib_##NAME(const strutlib_scene *scene, size_t count,                      \
+                                   const char *const *names, const char *const *values,            \
+                                   strutlib_control *control, strutlib_error **error) {            \
+    if (abi_lacks(error, scene, "scene")) return NULL;                                             \
+    abi_call call = abi_call_of(scene, &abi_##NAME##_command, control, error);                     \
+    return abi_compute(&call, &(abi_pairs){count, names, values}, WORK);                           \
+  }
 
 extern const strut_command abi_run_command, abi_equilibria_command, abi_modes_command,
     abi_rigidity_command, abi_form_command, abi_path_command, abi_matrices_command,
@@ -218,7 +238,6 @@ struct strutlib_result {
   strut_setup setup;
   strut_model *model;
   abi_arrays arrays; /* that are not in the JSON */
-  strut_arena arena;
   /** Draws a figure into the file; NULL: there is none. */
   strut_status (*draw)(const strutlib_result *result, const strut_arguments *arguments,
                        const char *path, strut_error *error);
@@ -227,24 +246,12 @@ struct strutlib_result {
   pthread_mutex_t lock; /* of what follows, made when it is first asked for */
   abi_tree *tree;
   abi_arrays made; /* of the JSON */
-  strut_arena made_arena;
 };
 
-/** A result without content, or NULL with the error. */
-strutlib_result *abi_result_create(const strut_command *command, strutlib_error **error);
-/** abi_leave at the end of a call that returns the result, which is released unless it is to be kept. */
-strutlib_result *abi_result_leave(strutlib_result *result, bool kept);
-/** Adds an array that is not in the JSON; its name is copied. False: memory is out. */
-bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
-                          const double *data, int dimensions, const size_t *shape);
-/** An array (count) or (count, components) to be filled in, zeros at first; NULL: memory is out. */
-double *abi_result_new_array(strutlib_result *result, const char *name, const char *unit,
-                             size_t count, size_t components);
+/** A result without content; NULL: memory is out. */
+strutlib_result *abi_result_create(const strut_command *command);
 /** The motion that a result recorded, or NULL; and its summary. */
 const strut_trajectory *abi_result_motion(const strutlib_result *result);
-
-/** A text of strut_allocate as one that strutlib_release releases. */
-char *abi_give(char *text, strutlib_error **error);
 
 /* ---- figures and pages as texts ---- */
 

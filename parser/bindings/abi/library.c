@@ -13,6 +13,7 @@
 #include "engine/scene/study.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/read/read_scene.h"
+#include "parser/language/yaml/text.h"
 #include "parser/program/command/analyses.h"
 #include "parser/program/command/scene_options.h"
 
@@ -115,18 +116,13 @@ bool abi_lacks_texts(strutlib_error **error, size_t count, const char *const *te
 /* ---- located ones ---- */
 
 /* The line of a place, without its end, in the arena. */
-static const char *line_of(const char *text, size_t length, size_t line, strut_arena *arena) {
-  const char *at = text, *end = text + length;
-  if (!text || line == 0) return "";
-  for (; line > 1; line--) {
-    const char *next = memchr(at, '\n', (size_t)(end - at));
-    if (!next) return "";
-    at = next + 1;
-  }
-  const char *stop = memchr(at, '\n', (size_t)(end - at));
-  if (!stop) stop = end;
-  if (stop > at && stop[-1] == '\r') stop--;
-  return strut_arena_text(arena, at, (size_t)(stop - at));
+static const char *line_of(const strut_used_file *in, uint32_t line, strut_arena *arena) {
+  strut_cursor at = strut_cursor_begin(in->text ? in->text : "", in->text ? in->length : 0);
+  strut_cursor_to_line(&at, line);
+  size_t end = at.offset;
+  while (at.line == line && end < at.length && !strut_text_break(at.text + end, at.length - end))
+    end++;
+  return strut_arena_text(arena, at.text + at.offset, end - at.offset);
 }
 
 /* The word of "... did you mean 'WORD'?", in the arena, or NULL. */
@@ -139,51 +135,38 @@ static const char *hint_of(const char *message, strut_arena *arena) {
   return end ? strut_arena_text(arena, at, (size_t)(end - at)) : NULL;
 }
 
-typedef struct key_search {
-  uint32_t line, column;
-  char path[512];
-  char best[512];
-} key_search;
-
-static bool is_behind(strut_place place, const key_search *self) {
-  return place.line > self->line || (place.line == self->line && place.column > self->column);
+static bool is_behind(const strut_tree *node, strut_place place) {
+  return node->place.line > place.line ||
+         (node->place.line == place.line && node->place.column > place.column);
 }
 
-/* Walks in the text's order, and keeps the path of the last value that begins at or before the place. */
-static void walk(const strut_tree *node, size_t used, key_search *self, int depth) {
-  const strut_tree *child = node->first;
-  bool map = node->kind == STRUT_TREE_MAP;
-  if (node->kind == STRUT_TREE_SCALAR || depth > 64) return;
-  for (uint32_t i = 0; i < node->count && child; i++) {
-    const strut_tree *key = map ? child : NULL, *value = map ? child->next : child;
-    if (!value || is_behind(key ? key->place : value->place, self)) return;
-    int more = key ? snprintf(self->path + used, sizeof self->path - used, "%s%s", used ? "." : "",
-                              key->text)
-                   : snprintf(self->path + used, sizeof self->path - used, "%s%u", used ? "." : "",
-                              (unsigned)i);
-    if (more < 0 || used + (size_t)more >= sizeof self->path) return;
-    memcpy(self->best, self->path, used + (size_t)more + 1);
-    walk(value, used + (size_t)more, self, depth + 1);
-    self->path[used] = '\0';
-    child = value->next;
-  }
-}
-
+/* The path of keys to the last value that begins at or before the place; NULL: memory is out. */
 static const char *key_of(const strut_document *document, strut_place place, strut_arena *arena) {
-  key_search s = {.line = place.line, .column = place.column};
-  if (!document->root || place.file != 0 || place.line == 0) return "";
-  walk(document->root, 0, &s, 0);
-  return strut_arena_text(arena, s.best, strlen(s.best));
+  const strut_tree *node = place.file == 0 && place.line > 0 ? document->root : NULL;
+  const char *path = "";
+  while (node && node->kind != STRUT_TREE_SCALAR && path) {
+    const strut_tree *last = NULL, *child = node->first;
+    bool map = node->kind == STRUT_TREE_MAP;
+    uint32_t i = 0;
+    for (; i < node->count && child && !is_behind(child, place); i++) {
+      last = child;
+      child = map ? child->next->next : child->next;
+    }
+    if (!last) break;
+    const char *dot = *path ? "." : "";
+    path = map ? strut_arena_format(arena, "%s%s%s", path, dot, last->text)
+               : strut_arena_format(arena, "%s%s%u", path, dot, (unsigned)i - 1);
+    node = map ? last->next : last;
+  }
+  return path;
 }
 
 static bool fill_item(const strut_diagnostics *found, const strut_document *document,
                       const strut_diagnostic *from, strut_arena *arena, located *to) {
-  const strut_used_file *used = from->place.file > 0 ? &found->used[from->place.file - 1] : NULL;
-  const char *file = used ? used->file : found->file ? found->file : "";
+  const strut_used_file in = strut_diagnostics_text(found, from->place);
   to->text = strut_arena_text(arena, from->message, strlen(from->message));
-  to->file = strut_arena_text(arena, file, strlen(file));
-  to->source = line_of(used ? used->text : found->text, used ? used->length : found->length,
-                       from->place.line, arena);
+  to->file = strut_arena_text(arena, in.file, strlen(in.file));
+  to->source = line_of(&in, from->place.line, arena);
   to->hint = hint_of(from->message, arena);
   to->key = key_of(document, from->place, arena);
   to->line = from->place.line;
@@ -310,14 +293,9 @@ int strutlib_abi_version(void) { return STRUTLIB_ABI_VERSION; }
 const char *strutlib_version(void) { return STRUT_VERSION; }
 void strutlib_release(char *text) { strut_release(text); }
 
-char *abi_give(char *text, strutlib_error **error) {
-  if (!text) abi_no_memory(error);
-  return text;
-}
-
 char *strutlib_schema(int study, strutlib_error **error) {
-  if (error) *error = NULL;
-  return abi_give(strut_schema_write(study != 0), error);
+  abi_enter(error);
+  return abi_leave_text(error, strut_schema_write(study != 0), NULL);
 }
 
 static struct cJSON *put_places(strut_json *json, struct cJSON *to, const strut_tree *node) {
@@ -346,15 +324,11 @@ char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **
   strut_diagnostics_source(&found, name, text, strlen(text));
   strut_status status = strut_document_read(&document, &found);
   if (!status) places = put_places(&json, json.root, document.root);
-  if (status == STRUT_BAD_SCENE)
-    abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
-  else
-    answer = abi_give(status || json.failed ? NULL : strut_json_print(places), error);
+  if (!status && !json.failed) answer = strut_json_print(places);
   strut_release(strut_json_end(&json));
   strut_document_free(&document);
-  strut_diagnostics_free(&found);
-  abi_leave();
-  return answer;
+  abi_settle(error, status, &found);
+  return abi_leave_text(error, answer, NULL);
 }
 
 /* ---- codes ---- */
@@ -435,7 +409,8 @@ void abi_enter(strutlib_error **error) {
   pthread_mutex_unlock(&handler_lock);
 }
 
-void abi_leave(void) {
+void abi_leave(strutlib_error **error, strut_status status, const strut_error *what) {
+  if (status && error && !*error) abi_fail_with(error, status, what);
   pthread_mutex_lock(&handler_lock);
   if (--computing == 0) {
     gsl_error_handler_t *now = gsl_set_error_handler_off();
@@ -445,41 +420,56 @@ void abi_leave(void) {
   pthread_mutex_unlock(&handler_lock);
 }
 
+char *abi_leave_text(strutlib_error **error, char *text, const strut_error *what) {
+  strut_status failure = what && what->status ? what->status : STRUT_NO_MEMORY;
+  abi_leave(error, text ? STRUT_OK : failure, what);
+  return text;
+}
+
 /* ---- calls ---- */
 
-void abi_call_fail(abi_call *call, strut_status status, const strut_error *what) {
-  bool reported = !(what && what->message[0]) && call->messages->error.message[0];
-  abi_fail_with(call->error, status, reported ? &call->messages->error : what);
+abi_call abi_call_of(const strutlib_scene *scene, const strut_command *command,
+                     strutlib_control *control, strutlib_error **error) {
+  return (abi_call){.scene = scene,
+                    .arguments = {.command = command,
+                                  .model = scene->source->name,
+                                  .overrides = scene->settings,
+                                  .override_count = scene->setting_count},
+                    .control = control,
+                    .error = error};
 }
 
-strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
-                            const strut_command *command, const abi_pairs *options,
-                            strutlib_control *control, strutlib_error **error,
-                            abi_messages *messages) {
-  if (abi_lacks(error, scene, "scene")) return STRUT_USAGE;
-  const strut_arguments begun = {.command = command,
-                                 .model = scene->source->name,
-                                 .overrides = scene->settings,
-                                 .override_count = scene->setting_count};
-  return abi_call_begin_file(call, &begun, options, control, error, messages);
-}
-
-strut_status abi_call_begin_file(abi_call *call, const strut_arguments *begun,
-                                 const abi_pairs *options, strutlib_control *control,
-                                 strutlib_error **error, abi_messages *messages) {
-  *call = (abi_call){.error = error, .control = control, .messages = messages, .arguments = *begun};
-  if (abi_lacks_pairs(error, options->count, options->names, options->values)) return STRUT_USAGE;
-  call->listener = abi_listen(messages);
+strut_status abi_call_begin(abi_call *call, const abi_pairs *options) {
+  if (abi_lacks_pairs(call->error, options->count, options->names, options->values))
+    return STRUT_USAGE;
+  call->listener = abi_listen(&call->messages);
   call->arguments.listener = &call->listener;
-  strut_status status = STRUT_OK;
-  for (size_t i = 0; i < options->count && status == STRUT_OK; i++)
-    status = strut_argument_set(options->names[i], options->values[i], &call->arguments);
-  if (status == STRUT_OK && control && control->interrupt) {
-    abi_fail(error, STRUTLIB_INTERRUPTED, "interrupted before anything was computed");
-    return STRUT_INTERRUPTED;
+  for (size_t i = 0; i < options->count; i++) {
+    strut_status status =
+        strut_argument_set(options->names[i], options->values[i], &call->arguments);
+    if (status) return status;
   }
-  if (status != STRUT_OK) abi_call_fail(call, status, NULL);
-  return status;
+  if (!call->control || !call->control->interrupt) return STRUT_OK;
+  return strut_fail(&call->what, STRUT_INTERRUPTED, "interrupted before anything was computed");
+}
+
+void abi_call_leave(const abi_call *call, strut_status status) {
+  const strut_error *heard = &call->messages.error;
+  abi_leave(call->error, status, !call->what.message[0] && heard->message[0] ? heard : &call->what);
+}
+
+strutlib_result *abi_compute(abi_call *call, const abi_pairs *options, abi_work *work) {
+  abi_enter(call->error);
+  strutlib_result *result = abi_result_create(call->arguments.command);
+  strut_status status = result ? abi_call_begin(call, options) : STRUT_NO_MEMORY;
+  if (!status) status = work(call, result);
+  abi_call_leave(call, status);
+  if (!result) return NULL;
+  if (status) result->status = (int)status;
+  result->messages = call->messages;
+  if (call->complete) return result;
+  strutlib_result_free(result);
+  return NULL;
 }
 
 /* ---- options ---- */

@@ -24,48 +24,36 @@ strut_status abi_plot_read(const strut_arguments *arguments, const char *path, s
 static const char figure_name[] = "figure.svg";
 static const char *const files[] = {figure_name, NULL};
 
-/* The figure that was drawn as a file, or NULL with the error; its folder goes. */
-static char *take_figure(const abi_scratch *self, strut_status status, strut_error *what,
-                         strutlib_error **error) {
+/* The figure that `status` says was drawn as a file, or NULL with the error; its folder goes. */
+static char *take_figure(const abi_scratch *self, strut_status status, strut_error *what) {
   char *text = status == STRUT_OK ? abi_scratch_read(self, figure_name, what) : NULL;
-  if (!text) abi_fail_with(error, what->status, what);
+  if (status != STRUT_OK) what->status = status;
   abi_scratch_end(self, files);
   return text;
 }
 
-static char *draw_result(const strutlib_result *result, const strut_arguments *arguments,
-                         const abi_messages *messages, strutlib_error **error) {
-  strut_error what = {0};
-  abi_scratch s;
-  strut_status status = abi_scratch_begin(&s, figure_name, &what);
-  if (status != STRUT_OK) return abi_fail_with(error, status, &what), NULL;
-  status = result->draw(result, arguments, s.path, &what);
-  if (status != STRUT_OK && !what.message[0]) what = messages->error;
-  if (status != STRUT_OK) what.status = status;
-  return take_figure(&s, status, &what, error);
+static char *draw_result(const strutlib_result *result, abi_call *call) {
+  abi_scratch scratch;
+  if (!result->draw) {
+    strut_fail(&call->what, STRUT_USAGE, "there is no figure of %s", result->command->name);
+    return NULL;
+  }
+  if (abi_scratch_begin(&scratch, figure_name, &call->what) != STRUT_OK) return NULL;
+  strut_status status = result->draw(result, &call->arguments, scratch.path, &call->what);
+  return take_figure(&scratch, status, &call->what);
 }
 
 char *strutlib_result_svg(const strutlib_result *result, size_t count, const char *const *names,
                           const char *const *values, strutlib_error **error) {
-  abi_messages messages = {0};
-  char *text = NULL;
-  if (abi_lacks(error, result, "result") || abi_lacks_pairs(error, count, names, values))
-    return NULL;
-  abi_enter(error);
-  strut_listener listener = abi_listen(&messages);
   /* There is a figure: options that belong to one are in their place. */
-  strut_arguments arguments = {.command = &abi_svg_command, .listener = &listener};
-  strut_status status = STRUT_OK;
-  for (size_t i = 0; i < count && status == STRUT_OK; i++)
-    status = strut_argument_set(names[i], values[i], &arguments);
-  if (status != STRUT_OK)
-    abi_fail_with(error, status, &messages.error);
-  else if (!result->draw)
-    abi_fail(error, STRUTLIB_USAGE, "there is no figure of %s", result->command->name);
-  else
-    text = draw_result(result, &arguments, &messages, error);
-  abi_messages_free(&messages);
-  abi_leave();
+  abi_call call = {.arguments.command = &abi_svg_command, .error = error};
+  char *text = NULL;
+  if (abi_lacks(error, result, "result")) return NULL;
+  abi_enter(error);
+  strut_status status = abi_call_begin(&call, &(abi_pairs){count, names, values});
+  if (status == STRUT_OK && !(text = draw_result(result, &call))) status = call.what.status;
+  abi_call_leave(&call, status);
+  abi_messages_free(&call.messages);
   return text;
 }
 
@@ -89,21 +77,16 @@ static strut_status draw_start(const strut_model *model, const char *path, strut
 char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_error **error) {
   strut_model *model = NULL;
   strut_error what = {0};
-  abi_scratch s;
+  abi_scratch scratch;
   char *text = NULL;
   if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
   strut_status status = strut_model_compile(&scene->setup.scene, &model, &what);
-  if (status == STRUT_OK) status = abi_scratch_begin(&s, figure_name, &what);
-  if (status == STRUT_OK) {
-    status = draw_start(model, s.path, &what);
-    text = take_figure(&s, status, &what, error);
-  } else {
-    abi_fail_with(error, status, &what);
-  }
+  if (status == STRUT_OK) status = abi_scratch_begin(&scratch, figure_name, &what);
+  if (status == STRUT_OK)
+    text = take_figure(&scratch, draw_start(model, scratch.path, &what), &what);
   strut_model_free(model);
-  abi_leave();
-  return text;
+  return abi_leave_text(error, text, &what);
 }
 
 /* ---- pages and their data ---- */
@@ -112,15 +95,11 @@ char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_error **error) {
 typedef char *page_writer(const strut_page *page, strut_page_frames *frames, strut_error *error);
 
 static char *write_page(strut_page *page, const strut_setup *setup, page_writer *writer,
-                        strutlib_error **error) {
-  strut_error what = {0};
-  char *yaml = strut_setup_write(setup), *text = NULL;
+                        strut_error *what) {
+  char *yaml = strut_setup_write(setup);
   page->yaml = yaml;
   page->experiment = &setup->experiment;
-  if (!yaml)
-    abi_no_memory(error);
-  else if (!(text = writer(page, NULL, &what)))
-    abi_fail_with(error, what.status, &what);
+  char *text = yaml ? writer(page, NULL, what) : NULL;
   strut_release(yaml);
   return text;
 }
@@ -128,6 +107,7 @@ static char *write_page(strut_page *page, const strut_setup *setup, page_writer 
 /* `still`: a result without motion and equilibria shows its structure, if it has a model. */
 static char *result_page(const strutlib_result *result, bool still, page_writer *writer,
                          strutlib_error **error) {
+  strut_error what = {0};
   char *text = NULL;
   if (abi_lacks(error, result, "result")) return NULL;
   abi_enter(error);
@@ -138,58 +118,39 @@ static char *result_page(const strutlib_result *result, bool still, page_writer 
   if (!page.equilibria) page.remark = "No search for equilibria was made.";
   if (page.motion && !page.motion->position) page.motion = NULL;
   if (page.motion || page.equilibria || (still && page.model))
-    text = write_page(&page, &result->setup, writer, error);
+    text = write_page(&page, &result->setup, writer, &what);
   else
-    abi_fail(error, STRUTLIB_USAGE, "there is no page of %s without a recorded motion",
-             result->command->name);
-  abi_leave();
-  return text;
+    strut_fail(&what, STRUT_USAGE, "there is no page of %s without a recorded motion",
+               result->command->name);
+  return abi_leave_text(error, text, &what);
 }
 
-/* With the equilibria, or a remark where they cannot be found. */
-static char *scene_page(const strut_setup *setup, const strut_model *model, bool equilibria,
-                        const strut_flag *interrupt, page_writer *writer, strutlib_error **error) {
-  strut_equilibria all = {0};
-  strut_error remark = {.message = "No search for equilibria was made."};
-  const strut_equilibria_options options = {.interrupt = interrupt};
-  strut_status status = STRUT_OK;
-  char *text = NULL;
-  if (equilibria)
-    status = strut_equilibria_find(model, &setup->experiment, &options, &all, &remark);
-  strut_page page = {.model = model};
-  if (equilibria && status == STRUT_OK)
-    page.equilibria = &all;
-  else
-    page.remark = remark.message;
-  if (status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY)
-    abi_fail_with(error, status, &remark);
-  else
-    text = write_page(&page, setup, writer, error);
-  strut_equilibria_free(&all);
-  return text;
-}
-
-static char *open_scene_page(const strutlib_scene *scene, bool equilibria,
-                             const strutlib_control *control, page_writer *writer,
-                             strutlib_error **error) {
+/* With the equilibria, or a remark where they were not searched or cannot be found. */
+static char *scene_page(const strutlib_scene *scene, bool search, const strutlib_control *control,
+                        page_writer *writer, strutlib_error **error) {
+  const strut_equilibria_options options = {.interrupt = abi_interrupt_of(control)};
   strut_model *model = NULL;
+  strut_equilibria all = {0};
   strut_setup setup;
-  strut_error what = {0};
+  strut_error what = {0}, remark = {.message = "No search for equilibria was made."};
   char *text = NULL;
   if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
-  if (abi_setup(scene, STRUT_FOR_ANY_STATICS, &setup, error) == STRUT_OK) {
-    strut_status status = strut_resolve_start_equilibrium(&setup, &what);
-    if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &what);
-    if (status == STRUT_OK)
-      text = scene_page(&setup, model, equilibria, abi_interrupt_of(control), writer, error);
-    else
-      abi_fail_with(error, status, &what);
-    strut_model_free(model);
-    strut_setup_free(&setup);
-  }
-  abi_leave();
-  return text;
+  if (abi_setup(scene, STRUT_FOR_ANY_STATICS, &setup, error) != STRUT_OK)
+    return abi_leave_text(error, NULL, NULL);
+  strut_status status = strut_resolve_start_equilibrium(&setup, &what), found = STRUT_OK;
+  if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &what);
+  if (status == STRUT_OK && search)
+    found = strut_equilibria_find(model, &setup.experiment, &options, &all, &remark);
+  if (found == STRUT_INTERRUPTED || found == STRUT_NO_MEMORY)
+    what = remark, what.status = status = found;
+  strut_page page = {.model = model, .remark = remark.message};
+  if (search && found == STRUT_OK) page.equilibria = &all, page.remark = NULL;
+  if (status == STRUT_OK) text = write_page(&page, &setup, writer, &what);
+  strut_equilibria_free(&all);
+  strut_model_free(model);
+  strut_setup_free(&setup);
+  return abi_leave_text(error, text, &what);
 }
 
 #define PAGES(WORD, STILL, WRITER)                                                                 \
@@ -198,7 +159,7 @@ static char *open_scene_page(const strutlib_scene *scene, bool equilibria,
   }                                                                                                \
   char *strutlib_scene_##WORD(const strutlib_scene *scene, int equilibria,                         \
                               strutlib_control *control, strutlib_error **error) {                 \
-    return open_scene_page(scene, equilibria != 0, control, WRITER, error);                        \
+    return scene_page(scene, equilibria != 0, control, WRITER, error);                             \
   }
 PAGES(html, false, strut_page_html)
 PAGES(page_data, true, strut_page_data)

@@ -213,14 +213,13 @@ static bool read_array(const abi_tree *tree, const char *name, strut_arena *aren
 
 /* Results: what all kinds of them show alike. */
 
-strutlib_result *abi_result_create(const strut_command *command, strutlib_error **error) {
+strutlib_result *abi_result_create(const strut_command *command) {
   strutlib_result *result = strut_allocate(1, sizeof *result);
   if (result && pthread_mutex_init(&result->lock, NULL) == 0) {
     result->command = command;
     return result;
   }
   strut_release(result);
-  abi_no_memory(error);
   return NULL;
 }
 
@@ -232,19 +231,11 @@ void strutlib_result_free(strutlib_result *result) {
   abi_tree_free(result->tree);
   strut_release(result->json);
   strut_release(result->table);
-  strut_release(result->made.items);
-  strut_release(result->arrays.items);
+  abi_arrays_free(&result->made);
+  abi_arrays_free(&result->arrays);
   abi_messages_free(&result->messages);
-  strut_arena_free(&result->arena);
-  strut_arena_free(&result->made_arena);
   pthread_mutex_destroy(&result->lock);
   strut_release(result);
-}
-
-strutlib_result *abi_result_leave(strutlib_result *result, bool kept) {
-  if (!kept) strutlib_result_free(result);
-  abi_leave();
-  return kept ? result : NULL;
 }
 
 /* ---- texts ---- */
@@ -261,15 +252,15 @@ const char *strutlib_result_warning(const strutlib_result *result, size_t i) {
 }
 
 char *strutlib_result_yaml(const strutlib_result *result, strutlib_error **error) {
+  strut_error what = {0};
+  char *text = NULL;
   if (abi_lacks(error, result, "result")) return NULL;
   abi_enter(error);
-  char *text = NULL;
   if (result->opened)
-    text = abi_give(strut_setup_write(&result->setup), error);
+    text = strut_setup_write(&result->setup);
   else
-    abi_fail(error, STRUTLIB_USAGE, "the result of %s holds no scene", result->command->name);
-  abi_leave();
-  return text;
+    strut_fail(&what, STRUT_USAGE, "the result of %s holds no scene", result->command->name);
+  return abi_leave_text(error, text, &what);
 }
 
 /* ---- values ---- */
@@ -325,11 +316,10 @@ abi_array abi_array_of(const char *name, const char *unit, const double *data, i
   return array;
 }
 
-/* With copies of its texts in the arena. NULL: memory is out. */
-static const abi_array *add_array(abi_arrays *list, strut_arena *arena, const abi_array *array) {
+const abi_array *abi_add_array(abi_arrays *list, const abi_array *array) {
   abi_array copy = *array;
-  copy.name = strut_arena_text(arena, array->name, strlen(array->name));
-  copy.unit = strut_arena_text(arena, array->unit, strlen(array->unit));
+  copy.name = strut_arena_text(&list->arena, array->name, strlen(array->name));
+  copy.unit = strut_arena_text(&list->arena, array->unit, strlen(array->unit));
   if (!copy.name || !copy.unit ||
       !strut_grow(&list->items, &list->capacity, list->count, sizeof copy))
     return NULL;
@@ -337,25 +327,35 @@ static const abi_array *add_array(abi_arrays *list, strut_arena *arena, const ab
   return &list->items[list->count++];
 }
 
-bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
-                          const double *data, int dimensions, const size_t *shape) {
-  const abi_array array = abi_array_of(name, unit, data, dimensions, shape);
-  return add_array(&result->arrays, &result->arena, &array) != NULL;
-}
-
-double *abi_result_new_array(strutlib_result *result, const char *name, const char *unit,
-                             size_t count, size_t components) {
-  double *data = strut_arena_allocate(&result->arena, count * components, sizeof *data);
+double *abi_new_array(abi_arrays *list, const char *name, const char *unit, size_t count,
+                      size_t components) {
+  double *data = strut_arena_allocate(&list->arena, count * components, sizeof *data);
   const size_t shape[] = {count, components};
-  return data && abi_result_add_array(result, name, unit, data, components > 1 ? 2 : 1, shape)
-             ? data
-             : NULL;
+  const abi_array array = abi_array_of(name, unit, data, components > 1 ? 2 : 1, shape);
+  return data && abi_add_array(list, &array) ? data : NULL;
 }
 
-static const abi_array *find_array(const abi_arrays *list, const char *name) {
+const abi_array *abi_find_array(const abi_arrays *list, const char *name) {
   for (size_t i = 0; i < list->count; i++)
     if (strcmp(list->items[i].name, name) == 0) return &list->items[i];
   return NULL;
+}
+
+void abi_arrays_free(abi_arrays *list) {
+  strut_release(list->items);
+  strut_arena_free(&list->arena);
+}
+
+int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
+                   size_t *stride) {
+  if (!array || !data || !dimensions || !shape || !stride) return 0;
+  *data = array->data;
+  *dimensions = array->dimensions;
+  for (int d = 0; d < array->dimensions; d++) {
+    shape[d] = array->shape[d];
+    stride[d] = array->stride[d];
+  }
+  return 1;
 }
 
 static long component_of(const strut_channel_row *row, const char *name) {
@@ -391,7 +391,7 @@ static bool slice(const strutlib_result *result, const abi_array *whole, const c
 /* An array that is not in the JSON, or a part of one, which `part` has room for; or NULL. */
 static const abi_array *given_array(const strutlib_result *result, const char *name,
                                     abi_array *part) {
-  const abi_array *found = find_array(&result->arrays, name);
+  const abi_array *found = abi_find_array(&result->arrays, name);
   for (size_t i = 0; !found && i < result->arrays.count; i++)
     if (slice(result, &result->arrays.items[i], name, part)) found = part;
   return found;
@@ -405,10 +405,10 @@ int strutlib_result_array(const strutlib_result *constant, const char *name, con
   if (found) return abi_show_array(found, data, dimensions, shape, stride);
   strutlib_result *result =
       lock(constant); /* an array of the JSON is made when it is first asked for */
-  found = find_array(&result->made, name);
-  if (!found && read_array(locked_tree(result), name, &result->made_arena, &part))
-    found = add_array(&result->made, &result->made_arena, &part);
-  int shown = found ? abi_show_array(found, data, dimensions, shape, stride) : 0;
+  found = abi_find_array(&result->made, name);
+  if (!found && read_array(locked_tree(result), name, &result->made.arena, &part))
+    found = abi_add_array(&result->made, &part);
+  int shown = abi_show_array(found, data, dimensions, shape, stride);
   pthread_mutex_unlock(&result->lock);
   return shown;
 }

@@ -45,25 +45,18 @@ static strut_channels choose_channels(const strut_arguments *arguments, const st
 /* ---- the run ---- */
 
 /* The scene as it is run with the options of the call; *opened: there is a setup, also after a failure. */
-static strut_status open_setup(abi_call *call, const strutlib_scene *scene, strut_setup *setup,
-                               bool *opened) {
-  strut_error what = {0};
+static strut_status open_setup(abi_call *call, strut_setup *setup, bool *opened) {
   strut_status status =
-      abi_setup(scene, strut_run_options_purpose(&call->arguments), setup, call->error);
+      abi_setup(call->scene, strut_run_options_purpose(&call->arguments), setup, call->error);
   *opened = status == STRUT_OK;
-  if (status != STRUT_OK) return status;
-  status = strut_resolve_start_equilibrium(setup, &what);
-  if (status == STRUT_OK) status = strut_run_options_apply(&call->arguments, setup);
-  if (status != STRUT_OK) abi_call_fail(call, status, &what);
-  return status;
+  if (status == STRUT_OK) status = strut_resolve_start_equilibrium(setup, &call->what);
+  return status ? status : strut_run_options_apply(&call->arguments, setup);
 }
 
 static void show_progress(void *context, double fraction) { abi_progress(context, fraction); }
 
-static strut_status simulate(abi_call *call, const strutlib_scene *scene,
-                             const strutlib_result *result, run_detail *run, strut_sink *sink,
-                             strut_error *what) {
-  const strut_experiment *experiment = &result->setup.experiment;
+static strut_status simulate(abi_call *call, const strutlib_result *result, strut_sink *sink) {
+  run_detail *run = result->detail;
   strut_sink *sinks[1] = {sink};
   const strut_run_options options = {
       .force = call->arguments.force,
@@ -72,42 +65,43 @@ static strut_status simulate(abi_call *call, const strutlib_scene *scene,
       .progress_context = call->control,
       .sinks = sinks,
       .sink_count = sink ? 1 : 0};
-  strut_varied_scenes scenes = {.file = scene->source->name,
-                                .source = scene->source->tree,
+  strut_varied_scenes scenes = {.file = call->scene->source->name,
+                                .source = call->scene->source->tree,
                                 .purpose = strut_run_options_purpose(&call->arguments)};
-  strut_status status =
-      strut_simulate_as_asked(result->model, experiment, &options, &run->summary, what);
+  strut_status status = strut_simulate_as_asked(result->model, &result->setup.experiment, &options,
+                                                &run->summary, &call->what);
   return status ? status
                 : strut_varied_scenes_derive(&call->arguments, &scenes, &result->setup,
-                                             options.interrupt, &run->summary, what);
+                                             options.interrupt, &run->summary, &call->what);
 }
 
 /* ---- what it shows ---- */
 
-static bool add_arrays(strutlib_result *result, const strut_trajectory *trajectory) {
+static bool add_arrays(abi_arrays *list, const strut_trajectory *trajectory,
+                       const strut_scene *scene) {
   const strut_channel_row *row;
-  bool good =
-      trajectory->frames == 0 || abi_result_add_array(result, "time", "s", trajectory->time, 1,
-                                                      (const size_t[]){trajectory->frames});
-  for (size_t i = 0; good && trajectory->frames && (row = strut_channel_at(i)) != NULL; i++) {
+  if (trajectory->frames == 0) return true;
+  abi_array array = abi_array_of("time", "s", trajectory->time, 1, &trajectory->frames);
+  bool good = abi_add_array(list, &array);
+  for (size_t i = 0; good && (row = strut_channel_at(i)) != NULL; i++) {
     const double *values = strut_trajectory_channel(trajectory, row->id);
-    const size_t shape[] = {trajectory->frames, strut_channel_things(row, &result->setup.scene),
-                            row->components};
+    const size_t shape[] = {trajectory->frames, strut_channel_things(row, scene), row->components};
     int dimensions = !strut_channel_is_whole(row) && row->components > 1 ? 3 : 2;
-    if (values)
-      good = abi_result_add_array(result, row->name, row->unit, values, dimensions, shape);
+    array = abi_array_of(row->name, row->unit, values, dimensions, shape);
+    good = !values || abi_add_array(list, &array);
   }
   return good;
 }
 
-static bool complete(strutlib_result *result, run_detail *run) {
+static bool complete(strutlib_result *result, abi_messages *messages) {
   const strut_scene *scene = &result->setup.scene;
+  const run_detail *run = result->detail;
   result->json = strut_summary_json(&run->summary, scene, false);
   result->table = strut_summary_table(&run->summary, scene, 0);
   for (size_t i = 0; i < run->summary.warning_count; i++)
-    abi_add_warning(&result->messages, run->summary.warnings[i].text);
-  return result->json && result->table && !result->messages.out_of_memory &&
-         add_arrays(result, &run->motion);
+    abi_add_warning(messages, run->summary.warnings[i].text);
+  return result->json && result->table && !messages->out_of_memory &&
+         add_arrays(&result->arrays, &run->motion, scene);
 }
 
 static strut_status draw(const strutlib_result *result, const strut_arguments *arguments,
@@ -141,36 +135,20 @@ static strut_status prepare(const strut_arguments *arguments, strutlib_result *r
   return status;
 }
 
-/* Runs what is open, and completes the result; sets the error of a run that ended early, too. */
-static strut_status run_model(abi_call *call, const strutlib_scene *scene,
-                              strutlib_result *result) {
-  strut_error what = {0};
+/* Of a run that ended early there is a result, too. */
+static strut_status run(abi_call *call, strutlib_result *result) {
   strut_sink *sink = NULL;
-  strut_status status = prepare(&call->arguments, result, &sink, &what);
-  if (status == STRUT_OK) status = simulate(call, scene, result, result->detail, sink, &what);
+  strut_status status = open_setup(call, &result->setup, &result->opened);
+  if (status == STRUT_OK) status = prepare(&call->arguments, result, &sink, &call->what);
+  if (status != STRUT_OK) return status;
+  status = simulate(call, result, sink);
   strut_trajectory_sink_free(sink);
-  result->status = (int)status;
-  if (status != STRUT_OK) abi_call_fail(call, status, &what);
-  if (!strut_run_has_results(status) || complete(result, result->detail)) return status;
-  if (call->error && *call->error) strutlib_error_free(*call->error);
-  return (strut_status)abi_no_memory(call->error);
+  if (!strut_run_has_results(status)) return status;
+  call->complete = complete(result, &call->messages);
+  return call->complete ? status : strut_no_memory(&call->what, "");
 }
 
-strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count, const char *const *names,
-                              const char *const *values, strutlib_control *control,
-                              strutlib_error **error) {
-  abi_call call;
-  abi_enter(error);
-  strutlib_result *result = abi_result_create(&abi_run_command, error);
-  strut_status status = result ? STRUT_OK : STRUT_NO_MEMORY;
-  if (status == STRUT_OK)
-    status = abi_call_begin(&call, scene, &abi_run_command, &(abi_pairs){count, names, values},
-                            control, error, &result->messages);
-  if (status == STRUT_OK) status = open_setup(&call, scene, &result->setup, &result->opened);
-  bool begun = status == STRUT_OK;
-  if (begun) status = run_model(&call, scene, result);
-  return abi_result_leave(result, begun && strut_run_has_results(status));
-}
+ABI_CALL(run, run)
 
 /* A run that is advanced from outside. */
 
@@ -183,46 +161,39 @@ struct strutlib_simulation {
 };
 
 /* The result has a scene and a model of its own, since inputs change those of the simulation. */
-static strut_status begin_recording(abi_call *call, const strutlib_scene *scene,
-                                    strutlib_simulation *simulation, strut_error *what) {
-  strutlib_result *result = simulation->recorded = abi_result_create(&abi_run_command, call->error);
+static strut_status begin_recording(abi_call *call, strutlib_simulation *simulation) {
+  strutlib_result *result = simulation->recorded = abi_result_create(&abi_run_command);
   if (!result) return STRUT_NO_MEMORY;
-  strut_status status = open_setup(call, scene, &result->setup, &result->opened);
-  return status ? status : prepare(&call->arguments, result, &simulation->sink, what);
+  strut_status status = open_setup(call, &result->setup, &result->opened);
+  return status ? status : prepare(&call->arguments, result, &simulation->sink, &call->what);
+}
+
+static strut_status begin(abi_call *call, strutlib_simulation *simulation) {
+  const strut_given_word *record = &call->arguments.record;
+  bool records = record->text ? record->index == 0 : call->arguments.channels.text != NULL;
+  strut_status status = open_setup(call, &simulation->setup, &simulation->opened);
+  if (status == STRUT_OK && records) status = begin_recording(call, simulation);
+  if (status != STRUT_OK) return status;
+  return strut_stepping_create(&simulation->setup, call->arguments.force,
+                               abi_interrupt_of(call->control), simulation->sink,
+                               &simulation->stepping, &call->what);
 }
 
 strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene, size_t count,
                                               const char *const *names, const char *const *values,
                                               strutlib_control *control, strutlib_error **error) {
-  abi_messages messages = {0};
-  abi_call call;
-  strut_error what = {0};
+  if (abi_lacks(error, scene, "scene")) return NULL;
+  abi_call call = abi_call_of(scene, &abi_simulation_command, control, error);
   abi_enter(error);
   strutlib_simulation *simulation = strut_allocate(1, sizeof *simulation);
   strut_status status = STRUT_NO_MEMORY;
-  if (simulation)
-    status = abi_call_begin(&call, scene, &abi_simulation_command,
-                            &(abi_pairs){count, names, values}, control, error, &messages);
-  else
-    abi_no_memory(error);
-  if (status == STRUT_OK)
-    status = open_setup(&call, scene, &simulation->setup, &simulation->opened);
-  const strut_given_word *record = &call.arguments.record;
-  if (status == STRUT_OK &&
-      (record->text ? record->index == 0 : call.arguments.channels.text != NULL))
-    status = begin_recording(&call, scene, simulation, &what);
-  if (status == STRUT_OK)
-    status =
-        strut_stepping_create(&simulation->setup, call.arguments.force, abi_interrupt_of(control),
-                              simulation->sink, &simulation->stepping, &what);
-  if (status != STRUT_OK && error && !*error) abi_call_fail(&call, status, &what);
-  if (status != STRUT_OK) {
-    strutlib_simulation_close(simulation);
-    simulation = NULL;
-  }
-  abi_messages_free(&messages);
-  abi_leave();
-  return simulation;
+  if (simulation) status = abi_call_begin(&call, &(abi_pairs){count, names, values});
+  if (status == STRUT_OK) status = begin(&call, simulation);
+  abi_call_leave(&call, status);
+  abi_messages_free(&call.messages);
+  if (status == STRUT_OK) return simulation;
+  strutlib_simulation_close(simulation);
+  return NULL;
 }
 
 void strutlib_simulation_close(strutlib_simulation *simulation) {
@@ -248,17 +219,18 @@ strutlib_result *strutlib_simulation_finish(strutlib_simulation *simulation,
                                             strutlib_error **error) {
   if (abi_lacks(error, simulation, "simulation")) return NULL;
   strutlib_result *result = simulation->recorded;
-  abi_enter(error);
-  if (result) {
-    run_detail *run = result->detail;
-    simulation->recorded = NULL;
-    result->status = (int)strut_stepping_finish(simulation->stepping, &run->summary);
-    bool kept = complete(result, run);
-    if (!kept) abi_no_memory(error);
-    return abi_result_leave(result, kept);
+  if (!result) {
+    abi_fail(error, STRUTLIB_USAGE, "the simulation records nothing, or was finished before");
+    return NULL;
   }
-  abi_fail(error, STRUTLIB_USAGE, "the simulation records nothing, or was finished before");
-  abi_leave();
+  abi_enter(error);
+  simulation->recorded = NULL;
+  run_detail *detail = result->detail;
+  result->status = (int)strut_stepping_finish(simulation->stepping, &detail->summary);
+  bool kept = complete(result, &result->messages);
+  abi_leave(error, kept ? STRUT_OK : STRUT_NO_MEMORY, NULL);
+  if (kept) return result;
+  strutlib_result_free(result);
   return NULL;
 }
 

@@ -92,26 +92,17 @@ CHANNEL(column, AT, i < row->components, row->column_names[i])
 
 /* ---- arrays ---- */
 
-static double *add(strutlib_scene *scene, size_t at, const char *name, const char *unit,
-                   size_t count, size_t components) {
-  double *data = strut_arena_allocate(&scene->arena, count * components, sizeof *data);
-  const size_t shape[] = {count, components};
-  scene->arrays[at] = abi_array_of(name, unit, data, components > 1 ? 2 : 1, shape);
-  return data;
-}
-
 static bool fill_arrays(strutlib_scene *scene) {
   const strut_scene *s = &scene->setup.scene;
   const strut_member *members = s->members;
-  size_t n = s->node_count, m = s->member_count, at = 0;
+  size_t n = s->node_count, m = s->member_count;
   strut_rest r;
-#define NODES(NAME, UNIT, PARTS, VALUE)                                                            \
-  ABI_FILL(add(scene, at++, "nodes." NAME, UNIT, n, PARTS), n, PARTS, VALUE)
-#define MEMBERS(NAME, UNIT, PARTS, VALUE)                                                          \
-  ABI_FILL(add(scene, at++, "members." NAME, UNIT, m, PARTS), m, PARTS, VALUE)
+#define THINGS(NAME, UNIT, COUNT, PARTS, VALUE)                                                    \
+  ABI_FILL(abi_new_array(&scene->arrays, NAME, UNIT, COUNT, PARTS), COUNT, PARTS, VALUE)
+#define MEMBERS(NAME, UNIT, PARTS, VALUE) THINGS("members." NAME, UNIT, m, PARTS, VALUE)
 #define REST(PART) (strut_member_rest(s, i, &r) ? r.PART : (double)NAN)
-  NODES("position", "m", 2, s->nodes[i].position[c]);
-  NODES("mass", "kg", 1, s->nodes[i].mass);
+  THINGS("nodes.position", "m", n, 2, s->nodes[i].position[c]);
+  THINGS("nodes.mass", "kg", n, 1, s->nodes[i].mass);
   MEMBERS("nodes", "1", 2, members[i].node[c]);
   MEMBERS("length", "m", 1, REST(drawn_length));
   MEMBERS("rest_length", "m", 1, REST(length));
@@ -122,56 +113,37 @@ static bool fill_arrays(strutlib_scene *scene) {
   return true;
 }
 
-int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
-                   size_t *stride) {
-  if (!data || !dimensions || !shape || !stride) return 0;
-  *data = array->data;
-  *dimensions = array->dimensions;
-  for (int d = 0; d < array->dimensions; d++) {
-    shape[d] = array->shape[d];
-    stride[d] = array->stride[d];
-  }
-  return 1;
-}
-
 int strutlib_scene_array(const strutlib_scene *scene, const char *name, const double **data,
                          int *dimensions, size_t *shape, size_t *stride) {
-  for (size_t i = 0; i < ABI_SCENE_ARRAYS && scene && name; i++)
-    if (strcmp(scene->arrays[i].name, name) == 0)
-      return abi_show_array(&scene->arrays[i], data, dimensions, shape, stride);
-  return 0;
+  const abi_array *found = scene && name ? abi_find_array(&scene->arrays, name) : NULL;
+  return abi_show_array(found, data, dimensions, shape, stride);
 }
 
 /* ---- texts ---- */
 
 /* The scene as a run would use it, as a flat text; NULL with the error. */
-static char *write_flat(const strutlib_scene *scene, strutlib_error **error) {
+static char *write_flat(const strutlib_scene *scene, strut_error *what, strutlib_error **error) {
   strut_setup setup;
-  strut_error what = {0};
   char *text = NULL;
   if (abi_setup(scene, STRUT_FOR_ANY, &setup, error) != STRUT_OK) return NULL;
-  strut_status status = strut_resolve_start_equilibrium(&setup, &what);
-  if (status == STRUT_OK)
-    text = abi_give(strut_setup_write(&setup), error);
-  else
-    abi_fail_with(error, status, &what);
+  if (strut_resolve_start_equilibrium(&setup, what) == STRUT_OK) text = strut_setup_write(&setup);
   strut_setup_free(&setup);
   return text;
 }
 
 /* The same with parameters, groups and parts; flat where these cannot say it. */
-static char *write_parts(const strutlib_scene *scene, strutlib_error **error) {
+static char *write_parts(const strutlib_scene *scene, strut_error *what) {
   const abi_source *source = scene->source;
   strut_diagnostics unused = {0};
   strut_scene_source *tree = NULL;
   char *flat = strut_setup_write(&scene->setup), *text = NULL;
-  strut_status status = flat ? STRUT_OK : STRUT_NO_MEMORY;
-  if (status == STRUT_OK) /* the tree is changed: it cannot be that of the scene */
-    status = strut_scene_source_open(source->name, source->text, source->length, &unused, &tree);
+  if (!flat) return NULL; /* the tree is changed: it cannot be that of the scene */
+  strut_status status =
+      strut_scene_source_open(source->name, source->text, source->length, &unused, &tree);
   if (status == STRUT_OK)
     status = strut_short_write(tree, scene->settings, scene->setting_count, flat, &scene->setup,
                                source->name, &text);
-  if (status != STRUT_OK) abi_fail_with(error, status, NULL);
+  what->status = status;
   strut_diagnostics_free(&unused);
   strut_scene_source_free(tree);
   if (status == STRUT_OK && !text) return flat;
@@ -180,11 +152,11 @@ static char *write_parts(const strutlib_scene *scene, strutlib_error **error) {
 }
 
 char *strutlib_scene_yaml(const strutlib_scene *scene, int parts, strutlib_error **error) {
+  strut_error what = {0};
   if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
-  char *text = parts ? write_parts(scene, error) : write_flat(scene, error);
-  abi_leave();
-  return text;
+  char *text = parts ? write_parts(scene, &what) : write_flat(scene, &what, error);
+  return abi_leave_text(error, text, &what);
 }
 
 /* ---- values ---- */
@@ -229,9 +201,7 @@ char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
   if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
   const abi_tree *tree = tree_of(scene);
-  char *text = abi_give(tree ? abi_tree_write(tree) : NULL, error);
-  abi_leave();
-  return text;
+  return abi_leave_text(error, tree ? abi_tree_write(tree) : NULL, NULL);
 }
 
 /* ---- the text ---- */
@@ -250,7 +220,7 @@ static char *copy_of(const char *text, size_t length) {
   return copy;
 }
 
-/* Takes ownership of the text, a block of strut_allocate that may be NULL. */
+/* Takes ownership of the text, a block of strut_allocate that may be NULL. NULL: memory is out, or *error says why. */
 static abi_source *read_source(const char *name, char *text, size_t length,
                                strutlib_error **error) {
   abi_source *source = strut_allocate(1, sizeof *source);
@@ -258,7 +228,6 @@ static abi_source *read_source(const char *name, char *text, size_t length,
   if (!source || !text) {
     strut_release(source);
     strut_release(text);
-    abi_no_memory(error);
     return NULL;
   }
   *source = (abi_source){.text = text, .length = length, .name = copy_of(name, strlen(name))};
@@ -284,21 +253,22 @@ strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut
 static bool add_setting(strutlib_scene *scene, const char *name, const char *value) {
   size_t at = 0; /* a later setting replaces an earlier one */
   while (at < scene->setting_count && strcmp(scene->settings[at].name, name) != 0) at++;
-  name = strut_arena_text(&scene->arena, name, strlen(name));
-  value = strut_arena_text(&scene->arena, value, strlen(value));
+  name = strut_arena_text(&scene->arrays.arena, name, strlen(name));
+  value = strut_arena_text(&scene->arrays.arena, value, strlen(value));
   scene->settings[at] = (strut_setting){.name = name, .text = value};
   if (at == scene->setting_count) scene->setting_count++;
   return name && value;
 }
 
-static bool add_settings(strutlib_scene *scene, const strutlib_scene *before, size_t count,
-                         const char *const *names, const char *const *values) {
-  size_t most = count + (before ? before->setting_count : 0);
-  scene->settings = strut_arena_allocate(&scene->arena, most, sizeof *scene->settings);
+static bool add_settings(strutlib_scene *scene, const strutlib_scene *before,
+                         const abi_pairs *settings) {
+  size_t most = settings->count + (before ? before->setting_count : 0);
+  scene->settings = strut_arena_allocate(&scene->arrays.arena, most, sizeof *scene->settings);
   bool good = scene->settings;
   for (size_t i = 0; good && before && i < before->setting_count; i++)
     good = add_setting(scene, before->settings[i].name, before->settings[i].text);
-  for (size_t i = 0; good && i < count; i++) good = add_setting(scene, names[i], values[i]);
+  for (size_t i = 0; good && i < settings->count; i++)
+    good = add_setting(scene, settings->names[i], settings->values[i]);
   return good;
 }
 
@@ -319,69 +289,58 @@ static strut_status read_scene(strutlib_scene *scene, strutlib_error **error) {
   abi_add_notes(&scene->messages, &found);
   if (abi_settle(error, status, &found) != STRUT_OK) return status;
   status = add_warnings(scene);
-  if (status == STRUT_OK && !fill_arrays(scene)) status = STRUT_NO_MEMORY;
-  if (status != STRUT_OK) abi_no_memory(error);
-  return status;
+  return status == STRUT_OK && !fill_arrays(scene) ? STRUT_NO_MEMORY : status;
 }
 
-/* Takes over the source, which may be NULL after an error. */
-static strutlib_scene *make_scene(abi_source *source, const strutlib_scene *before, size_t count,
-                                  const char *const *names, const char *const *values,
+/* The end of a call that opens a scene of a source, which it takes over, or which is NULL after a failure. */
+static strutlib_scene *make_scene(abi_source *source, const strutlib_scene *before,
+                                  const abi_pairs *settings, const strut_error *what,
                                   strutlib_error **error) {
-  if (!source) return NULL;
-  strutlib_scene *scene = strut_allocate(1, sizeof *scene);
-  if (!scene || pthread_mutex_init(&scene->lock, NULL) != 0) {
+  strut_status status = what && what->status ? what->status : STRUT_NO_MEMORY;
+  strutlib_scene *scene = source ? strut_allocate(1, sizeof *scene) : NULL;
+  if (scene && pthread_mutex_init(&scene->lock, NULL) == 0) {
+    scene->source = source;
+    if (add_settings(scene, before, settings)) status = read_scene(scene, error);
+    if (status != STRUT_OK) strutlib_close(scene);
+  } else {
     strut_release(scene);
     release_source(source);
-    abi_no_memory(error);
-    return NULL;
   }
-  scene->source = source;
-  strut_status status = STRUT_NO_MEMORY;
-  if (add_settings(scene, before, count, names, values))
-    status = read_scene(scene, error);
-  else
-    abi_no_memory(error);
-  if (status == STRUT_OK) return scene;
-  strutlib_close(scene);
-  return NULL;
+  abi_leave(error, status, what);
+  return status == STRUT_OK ? scene : NULL;
 }
 
 strutlib_scene *strutlib_open(const char *path, size_t count, const char *const *names,
                               const char *const *values, strutlib_error **error) {
+  const abi_pairs settings = {count, names, values};
   char *text = NULL;
   size_t length = 0;
   strut_error what = {0};
-  strutlib_scene *scene = NULL;
   if (abi_lacks(error, path, "path") || abi_lacks_pairs(error, count, names, values)) return NULL;
   abi_enter(error);
-  strut_status status =
-      strcmp(path, "-") == 0
-          ? strut_fail(&what, STRUT_FILE_TROUBLE, "'-' is no file: use strutlib_open_text")
-          : strut_file_read(path, &text, &length, &what);
-  if (status == STRUT_OK)
-    scene = make_scene(read_source(path, text, length, error), NULL, count, names, values, error);
+  if (strcmp(path, "-") == 0)
+    strut_fail(&what, STRUT_FILE_TROUBLE, "'-' is no file: use strutlib_open_text");
   else
-    abi_fail_with(error, status, &what);
-  abi_leave();
-  return scene;
+    strut_file_read(path, &text, &length, &what);
+  abi_source *source = text ? read_source(path, text, length, error) : NULL;
+  return make_scene(source, NULL, &settings, &what, error);
 }
 
 strutlib_scene *strutlib_open_text(const char *name, const char *text, size_t length, size_t count,
                                    const char *const *names, const char *const *values,
                                    strutlib_error **error) {
-  strutlib_scene *scene = NULL;
+  const abi_pairs settings = {count, names, values};
+  abi_source *source = NULL;
+  strut_error what = {0};
   if (abi_lacks(error, name, "name") || abi_lacks(error, text, "text") ||
       abi_lacks_pairs(error, count, names, values))
     return NULL;
   abi_enter(error);
   if (length <= STRUT_TEXT_MOST)
-    scene = make_scene(read_source(name, copy_of(text, length), length, error), NULL, count, names,
-                       values, error);
+    source = read_source(name, copy_of(text, length), length, error);
   else
-    abi_fail(error, STRUTLIB_BAD_SCENE, "'%s' has more than %zu MiB", name, STRUT_TEXT_MOST >> 20);
-  abi_leave();
-  return scene;
+    strut_fail(&what, STRUT_BAD_SCENE, "'%s' has more than %zu MiB", name, STRUT_TEXT_MOST >> 20);
+  return make_scene(source, NULL, &settings, &what, error);
 }
 
 strutlib_scene *strutlib_scene_with(const strutlib_scene *scene, size_t count,
@@ -390,9 +349,7 @@ strutlib_scene *strutlib_scene_with(const strutlib_scene *scene, size_t count,
   if (abi_lacks(error, scene, "scene") || abi_lacks_pairs(error, count, names, values)) return NULL;
   abi_enter(error);
   atomic_fetch_add(&scene->source->users, 1);
-  strutlib_scene *other = make_scene(scene->source, scene, count, names, values, error);
-  abi_leave();
-  return other;
+  return make_scene(scene->source, scene, &(abi_pairs){count, names, values}, NULL, error);
 }
 
 void strutlib_close(strutlib_scene *scene) {
@@ -402,7 +359,7 @@ void strutlib_close(strutlib_scene *scene) {
   abi_messages_free(&scene->messages);
   release_source(scene->source);
   pthread_mutex_destroy(&scene->lock);
-  strut_arena_free(&scene->arena);
+  abi_arrays_free(&scene->arrays);
   strut_release(scene);
 }
 

@@ -12,38 +12,52 @@
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/analyses.h"
 
-typedef struct analysis_detail {
-  strut_analysis analysis; /* of the result's setup and model */
-} analysis_detail;
-
 static void release(void *detail) {
-  analysis_detail *self = detail;
-  strut_analysis_free(&self->analysis);
-  strut_release(self);
+  strut_analysis_free(detail);
+  strut_release(detail);
 }
 
 const strut_equilibria *abi_result_equilibria(const strutlib_result *result) {
   if (result->command != &abi_equilibria_command) return NULL;
-  return &((const analysis_detail *)result->detail)->analysis.result.equilibria;
+  return &((const strut_analysis *)result->detail)->result.equilibria;
 }
 
 static strut_status draw(const strutlib_result *result, const strut_arguments *arguments,
                          const char *path, strut_error *error) {
-  const strut_analysis *analysis = &((const analysis_detail *)result->detail)->analysis;
+  const strut_analysis *analysis = result->detail;
   strut_plot plot;
   strut_status status = abi_plot_read(arguments, path, &plot);
   return status == STRUT_OK ? analysis->kind->draw(analysis, &plot, 0, error) : status;
 }
 
-static strut_status compute_and_report(abi_call *call, const strutlib_scene *scene,
-                                       strutlib_result *result, strut_error *what) {
+static strut_status open_setup(abi_call *call, bool compiled, strutlib_result *result) {
+  strut_status status = abi_setup(call->scene, STRUT_FOR_ANY_STATICS, &result->setup, call->error);
+  result->opened = status == STRUT_OK;
+  result->setup.experiment.interrupt = abi_interrupt_of(call->control);
+  if (status != STRUT_OK || !compiled) return status;
+  return strut_model_compile(&result->setup.scene, &result->model, &call->what);
+}
+
+static strut_status report(abi_call *call, strutlib_result *result) {
+  const strut_analysis *analysis = result->detail;
+  const strut_analysis_kind *kind = analysis->kind;
+  strut_status status = kind->verdict ? kind->verdict(analysis, &call->what) : STRUT_OK;
+  if (status != STRUT_OK) return status;
+  if (kind->warn) kind->warn(analysis, &call->listener);
+  result->json = strut_analysis_json(analysis);
+  result->table = strut_analysis_text(analysis, STRUT_REPORT_WIDTH);
+  call->complete = result->json && result->table && !call->messages.out_of_memory;
+  return call->complete ? STRUT_OK : strut_no_memory(&call->what, "");
+}
+
+static strut_status analyse(abi_call *call, strutlib_result *result) {
   const strut_analysis_kind *kind = result->command->analysis;
-  const abi_source *source = scene->source;
-  analysis_detail *self = strut_allocate(1, sizeof *self);
-  if (!self) return strut_no_memory(what, "");
-  strut_analysis *analysis = &self->analysis;
+  const abi_source *source = call->scene->source;
+  strut_status status = open_setup(call, !kind->uncompiled, result);
+  if (status != STRUT_OK) return status;
+  strut_analysis *analysis = result->detail = strut_allocate(1, sizeof *analysis);
+  if (!analysis) return strut_no_memory(&call->what, "");
   result->release = release;
-  result->detail = self;
   result->draw = draw;
   *analysis = (strut_analysis){.kind = kind,
                                .arguments = &call->arguments,
@@ -54,92 +68,85 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
                                           .text = source->text,
                                           .length = source->length,
                                           .source = source->tree}};
-  strut_status status = strut_analysis_compute(analysis, what);
-  if (status == STRUT_OK && analysis->kind->verdict)
-    status = analysis->kind->verdict(analysis, what);
-  if (status != STRUT_OK) return status;
-  if (analysis->kind->warn) analysis->kind->warn(analysis, &call->listener);
-  result->json = strut_analysis_json(analysis);
-  result->table = strut_analysis_text(analysis, STRUT_REPORT_WIDTH);
-  bool complete = result->json && result->table && !result->messages.out_of_memory;
-  return complete ? STRUT_OK : strut_no_memory(what, "");
+  status = strut_analysis_compute(analysis, &call->what);
+  if (status == STRUT_OK) status = report(call, result);
+  if (status == STRUT_OK && kind->uncompiled) /* of the scene that it has made, for pages */
+    (void)strut_model_compile(&result->setup.scene, &result->model, NULL);
+  return status;
 }
 
 /* ---- matrices and the shape that they are of, as arrays ---- */
 
-/* Entries of a matrix, one after the other. */
-typedef struct entries {
-  size_t count, rows, columns;
-  double *row, *column, *value;
-} entries;
+/* A matrix by columns. */
+typedef struct matrix {
+  size_t rows;
+  int32_t columns;
+  const int32_t *start, *row;
+  const double *value;
+  bool symmetric; /* only one triangle is there, and zeros, which are no entries */
+} matrix;
 
-static bool reserve(strutlib_result *result, size_t most, size_t rows, size_t columns,
-                    entries *to) {
-  *to = (entries){.rows = rows, .columns = columns};
-  to->row = strut_arena_allocate(&result->arena, most, sizeof(double));
-  to->column = strut_arena_allocate(&result->arena, most, sizeof(double));
-  to->value = strut_arena_allocate(&result->arena, most, sizeof(double));
-  return to->row && to->column && to->value;
-}
-
-static void put(entries *to, int32_t row, int32_t column, double value) {
-  to->row[to->count] = row;
-  to->column[to->count] = column;
-  to->value[to->count++] = value;
-}
-
-static bool show(strutlib_result *result, const char *name, const char *unit, const entries *self) {
+/* Its entries, one after the other: row, column and value of each, and its size. */
+static bool add_matrix(strutlib_result *result, const char *name, const char *unit,
+                       const matrix *from) {
   static const char *const parts[] = {"row", "column", "value"};
-  const double *const data[] = {self->row, self->column, self->value};
+  size_t most = (size_t)from->start[from->columns], count = 0;
+  double *entries[3];
   char text[60];
+  for (int i = 0; i < 3; i++)
+    if (!(entries[i] = strut_arena_allocate(&result->arrays.arena, 2 * most, sizeof **entries)))
+      return false;
+  for (int32_t j = 0; j < from->columns; j++)
+    for (int32_t k = from->start[j]; k < from->start[j + 1]; k++) {
+      const double entry[] = {from->row[k], j, from->value[k]};
+      if (from->symmetric && entry[2] == 0.0) continue;
+      for (int i = 0; i < 3; i++) entries[i][count] = entry[i];
+      count++;
+      if (!from->symmetric || from->row[k] == j) continue;
+      for (int i = 0; i < 3; i++) entries[i][count] = entry[i < 2 ? 1 - i : i];
+      count++;
+    }
   for (int i = 0; i < 3; i++) {
     snprintf(text, sizeof text, "%s.%s", name, parts[i]);
-    if (!abi_result_add_array(result, text, i < 2 ? "1" : unit, data[i], 1, &self->count))
-      return false;
+    const abi_array array = abi_array_of(text, i < 2 ? "1" : unit, entries[i], 1, &count);
+    if (!abi_add_array(&result->arrays, &array)) return false;
   }
   snprintf(text, sizeof text, "%s.size", name);
-  double *size = abi_result_new_array(result, text, "1", 2, 1);
-  if (size) size[0] = (double)self->rows, size[1] = (double)self->columns;
+  double *size = abi_new_array(&result->arrays, text, "1", 2, 1);
+  if (size) size[0] = (double)from->rows, size[1] = from->columns;
   return size;
 }
 
 static bool add_symmetric(strutlib_result *result, const char *name, const char *unit,
                           const strut_sparse *from) {
-  entries m;
   if (!from) return true;
-  size_t n = (size_t)from->n;
-  if (!reserve(result, 2 * (size_t)from->start[n], n, n, &m)) return false;
-  for (int32_t j = 0; j < from->n; j++)
-    for (int32_t k = from->start[j]; k < from->start[j + 1]; k++) {
-      if (from->value[k] == 0.0) continue;
-      put(&m, from->row[k], j, from->value[k]);
-      if (from->row[k] != j) put(&m, j, from->row[k], from->value[k]);
-    }
-  return show(result, name, unit, &m);
+  const matrix whole = {(size_t)from->n, from->n, from->start, from->row, from->value, true};
+  return add_matrix(result, name, unit, &whole);
 }
 
-static bool add_connectivity(strutlib_result *result, const strut_scene *scene) {
-  entries m;
-  if (!reserve(result, 2 * scene->member_count, scene->node_count, scene->member_count, &m))
+static bool add_connectivity(strutlib_result *result, const strut_scene *scene,
+                             strut_arena *arena) {
+  int32_t *start, *row;
+  double *value;
+  size_t m = scene->member_count;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(start, m + 1), STRUT_NEW(row, 2 * m),
+                      STRUT_NEW(value, 2 * m)))
     return false;
-  for (size_t j = 0; j < scene->member_count; j++) {
-    put(&m, scene->members[j].node[0], (int32_t)j, -1.0);
-    put(&m, scene->members[j].node[1], (int32_t)j, 1.0);
+  for (size_t k = 0; k < 2 * m; k++) {
+    row[k] = scene->members[k / 2].node[k % 2];
+    value[k] = k % 2 ? 1.0 : -1.0;
+    start[k / 2 + 1] = (int32_t)k + 1;
   }
-  return show(result, "connectivity", "1", &m);
+  const matrix whole = {scene->node_count, (int32_t)m, start, row, value, false};
+  return add_matrix(result, "connectivity", "1", &whole);
 }
 
-static bool add_equilibrium(strutlib_result *result, const strut_equilibrium_matrix *matrix) {
-  entries m;
-  size_t rows = (size_t)matrix->rows;
-  if (!reserve(result, (size_t)matrix->start[matrix->columns], rows, (size_t)matrix->columns, &m))
-    return false;
-  for (int32_t j = 0; j < matrix->columns; j++)
-    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++)
-      put(&m, matrix->row[k], j, matrix->value[k]);
-  bool good = show(result, "equilibrium", "1", &m);
-  double *coordinate = good ? abi_result_new_array(result, "coordinates", "1", rows, 1) : NULL;
-  for (size_t i = 0; coordinate && i < rows; i++) coordinate[i] = matrix->coordinate[i];
+static bool add_equilibrium(strutlib_result *result, const strut_equilibrium_matrix *from) {
+  size_t rows = (size_t)from->rows;
+  const matrix whole = {rows, from->columns, from->start, from->row, from->value, false};
+  bool good = add_matrix(result, "equilibrium", "1", &whole);
+  double *coordinate = good ? abi_new_array(&result->arrays, "coordinates", "1", rows, 1) : NULL;
+  for (size_t i = 0; coordinate && i < rows; i++) coordinate[i] = from->coordinate[i];
   return coordinate;
 }
 
@@ -157,7 +164,7 @@ static bool add_shape(strutlib_result *result, const strut_model *model, const d
   const strut_member *members = model->scene->members;
   const size_t n = model->scene->node_count, m = model->scene->member_count;
 #define SHAPE(NAME, UNIT, COUNT, PARTS, VALUE)                                                     \
-  ABI_FILL(abi_result_new_array(result, NAME, UNIT, COUNT, PARTS), COUNT, PARTS, VALUE)
+  ABI_FILL(abi_new_array(&result->arrays, NAME, UNIT, COUNT, PARTS), COUNT, PARTS, VALUE)
   SHAPE("position", "m", n, 2, q[2 * i + c]);
   SHAPE("weight", "kg", n, 1, model->weight[i]);
   SHAPE("length", "m", m, 1, strut_member_path_length(model, (int32_t)i, q));
@@ -169,20 +176,21 @@ static bool add_shape(strutlib_result *result, const strut_model *model, const d
   return true;
 }
 
-static strut_status build_matrices(abi_call *call, strutlib_result *result, strut_error *what) {
-  const strut_model *model = result->model;
+static strut_status build_matrices(abi_call *call, strutlib_result *result) {
   strut_arena arena = {0};
   strut_equilibrium_matrix equilibrium;
   strut_linear_matrices linear;
   strut_rest_state shape;
-  const char *at = call->arguments.at;
-  strut_status status = strut_rest_state_find(model, &result->setup.experiment, at ? at : "drawn",
-                                              &arena, &shape, what);
+  const char *at = call->arguments.at ? call->arguments.at : "drawn";
+  strut_status status = open_setup(call, true, result);
+  if (status != STRUT_OK) return status;
+  const strut_model *model = result->model;
+  status = strut_rest_state_find(model, &result->setup.experiment, at, &arena, &shape, &call->what);
   if (status == STRUT_OK)
     status = strut_equilibrium_matrix_build(model, shape.q, &arena, &equilibrium);
   if (status == STRUT_OK) status = strut_linear_matrices_build(model, shape.q, &arena, &linear);
   if (status == STRUT_OK &&
-      !(add_connectivity(result, model->scene) && add_equilibrium(result, &equilibrium) &&
+      !(add_connectivity(result, model->scene, &arena) && add_equilibrium(result, &equilibrium) &&
         add_symmetric(result, "mass", "kg", linear.mass) &&
         add_symmetric(result, "stiffness_elastic", "N/m", linear.elastic) &&
         add_symmetric(result, "stiffness_geometric", "N/m", linear.geometric) &&
@@ -191,52 +199,10 @@ static strut_status build_matrices(abi_call *call, strutlib_result *result, stru
         add_shape(result, model, shape.q)))
     status = STRUT_NO_MEMORY;
   strut_arena_free(&arena);
+  call->complete = status == STRUT_OK;
   return status;
 }
 
-/* ---- calls ---- */
-
-static strut_status open_setup(abi_call *call, const strutlib_scene *scene, bool compiled,
-                               strutlib_result *result) {
-  strut_error what = {0};
-  strut_status status = abi_setup(scene, STRUT_FOR_ANY_STATICS, &result->setup, call->error);
-  result->opened = status == STRUT_OK;
-  result->setup.experiment.interrupt = abi_interrupt_of(call->control);
-  if (status != STRUT_OK || !compiled) return status;
-  status = strut_model_compile(&result->setup.scene, &result->model, &what);
-  if (status != STRUT_OK) abi_call_fail(call, status, &what);
-  return status;
-}
-
-/* What a command computes: its analysis, or the matrices. */
-static strutlib_result *analyse(const strutlib_scene *scene, const strut_command *command,
-                                const abi_pairs *options, strutlib_control *control,
-                                strutlib_error **error) {
-  const strut_analysis_kind *kind = command->analysis;
-  abi_call call;
-  strut_error what = {0};
-  abi_enter(error);
-  strutlib_result *result = abi_result_create(command, error);
-  strut_status status = result ? STRUT_OK : STRUT_NO_MEMORY;
-  if (result)
-    status = abi_call_begin(&call, scene, command, options, control, error, &result->messages);
-  if (status == STRUT_OK) status = open_setup(&call, scene, !(kind && kind->uncompiled), result);
-  if (status == STRUT_OK) {
-    status = kind ? compute_and_report(&call, scene, result, &what)
-                  : build_matrices(&call, result, &what);
-    if (status != STRUT_OK) abi_call_fail(&call, status, &what);
-  }
-  if (status == STRUT_OK && kind && kind->uncompiled) /* of the scene that it has made, for pages */
-    (void)strut_model_compile(&result->setup.scene, &result->model, &what);
-  return abi_result_leave(result, status == STRUT_OK);
-}
-
-#define CALL(NAME)                                                                                 \
-  strutlib_result *strutlib_##NAME(const strutlib_scene *scene, size_t count,                      \
-                                   const char *const *names, const char *const *values,            \
-                                   strutlib_control *control, strutlib_error **error) {            \
-    const abi_pairs options = {count, names, values};                                              \
-    return analyse(scene, &abi_##NAME##_command, &options, control, error);                        \
-  }
-STRUT_ANALYSES(CALL)
-CALL(matrices)
+#define ANALYSE(NAME) ABI_CALL(NAME, analyse)
+STRUT_ANALYSES(ANALYSE)
+ABI_CALL(matrices, build_matrices)

@@ -4,7 +4,7 @@
     python3 fill_options.py PACKAGE NAME.py.in...
 
 PACKAGE is the package's folder in the build tree, which gets NAME.py: a line `@OPTIONS call@` becomes the keyword
-arguments of a call, `@HELP call@` a line about each.
+arguments of a call, `@HELP call@` a line about each, and `@CALL call: what it does@` the method of a scene.
 """
 
 from __future__ import annotations
@@ -17,6 +17,16 @@ import types
 
 TYPES = {"number": "Value", "whole": "int", "range": "str"}
 MOST_WORDS = 6  #: of a literal type
+METHOD = '''
+    def {0}(
+        self, *,
+        @OPTIONS {0}@
+    ) -> {1}:
+        """{2}
+
+        @HELP {0}@
+        """
+        return self._call({1}, locals())  # type: ignore[no-any-return]'''
 
 
 def annotation(kind: str, words: str | None) -> str:
@@ -45,8 +55,12 @@ def main(package: str, *templates: str) -> None:
         types = library.option_types(call)
         return "\n".join(f"{indent}{name}: {annotation(*of)}," for (name, _), of in zip(options, types))
 
+    def method(line: re.Match[str]) -> str:
+        return METHOD.format(line[1], line[1].capitalize(), line[2])
+
     for template in map(pathlib.Path, templates):
-        text = re.sub(r"(?m)^( *)@(OPTIONS|HELP) (\w+)@$", fill, template.read_text("utf-8"))
+        text = re.sub(r"(?m)^    @CALL (\w+): (.*)@$", method, template.read_text("utf-8"))
+        text = re.sub(r"(?m)^( *)@(OPTIONS|HELP) (\w+)@$", fill, text)
         pathlib.Path(package, template.stem).write_text(text, "utf-8")
 
 

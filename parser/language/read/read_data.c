@@ -346,9 +346,10 @@ bool strut_read_file_of(strut_reader *reader, const strut_tree *name, size_t mos
   const char *folder = strut_folder_of(reader->diagnostics->file, &reader->scratch);
   strut_error error = {0};
   strut_status status =
-      folder ? strut_safe_read(folder, strut_diagnostics_file(reader->diagnostics, name->place),
-                               name->text, most, text, &error)
-             : STRUT_NO_MEMORY;
+      folder
+          ? strut_safe_read(folder, strut_diagnostics_text(reader->diagnostics, name->place).file,
+                            name->text, most, text, &error)
+          : STRUT_NO_MEMORY;
   if (status == STRUT_NO_MEMORY) reader->out_of_memory = true;
   return !status || strut_report_error(reader, name->place, "%s", error.message);
 }

@@ -453,7 +453,7 @@ strut_status strut_study_vary(void *study_file, const strut_study_value *values,
   if (status == STRUT_BAD_SCENE) {
     strut_diagnostics_sort(&diagnostics);
     const strut_diagnostic *first = &diagnostics.items[0];
-    strut_fail(error, status, "%s:%u: %s", strut_diagnostics_file(&diagnostics, first->place),
+    strut_fail(error, status, "%s:%u: %s", strut_diagnostics_text(&diagnostics, first->place).file,
                first->place.line, first->message);
   } else if (status == STRUT_USAGE) {
     strut_fail(error, status, "the options do not fit the scene of this point");

@@ -359,6 +359,17 @@ static strut_place place_of(strut_search_place place, size_t offset, size_t leng
       .line = place.line, .column = place.column + (uint32_t)offset, .length = length & 0xffffffu};
 }
 
+/* "; did you mean 'drive_work'?" of the group `work` of columns, which `keep` has and the table has not, or "". */
+static strut_near near_group(const binder *self, const char *text, size_t length) {
+  strut_near near = {""};
+  for (size_t i = 0; i < self->count && !near.text[0]; i++) {
+    const char *end = strrchr(self->columns[i].name, '_');
+    if (end && strlen(end + 1) == length && memcmp(end + 1, text, length) == 0)
+      snprintf(near.text, sizeof near.text, "; did you mean '%.60s'?", self->columns[i].name);
+  }
+  return near;
+}
+
 /* Compiles text[0..), which lies `offset` bytes behind the place. False where something was reported. */
 static bool compile(binder *self, const char *text, size_t offset, strut_search_formula *formula,
                     strut_quantity *quantity) {
@@ -375,8 +386,9 @@ static bool compile(binder *self, const char *text, size_t offset, strut_search_
   if (!strut_expression_compile(text, &scope, &compiler, quantity, &error)) {
     strut_diagnose(
         &self->file->diagnostics, place_of(formula->place, offset + error.offset, error.length),
-        "in '%s' of the search: %s%s", formula->text, error.message,
-        strstr(error.message, "unknown") ? "; 'keep' chooses the columns of the table" : "");
+        "in '%s' of the search: %s%s%s", formula->text, error.message,
+        strstr(error.message, "unknown") ? "; 'keep' chooses the columns of the table" : "",
+        near_group(self, text + error.offset, error.length).text);
     return false;
   }
   for (size_t i = 0; i < compiler.length; i++) kept[i] = program[i].instruction;

@@ -209,8 +209,7 @@ static int compare(const void *first, const void *second) {
   return order ? order : a->order < b->order ? -1 : a->order > b->order;
 }
 
-/* The text that a place is in. */
-static strut_used_file text_of(const strut_diagnostics *diagnostics, strut_place place) {
+strut_used_file strut_diagnostics_text(const strut_diagnostics *diagnostics, strut_place place) {
   if (place.file && place.file <= diagnostics->used_count) return diagnostics->used[place.file - 1];
   return (strut_used_file){diagnostics->file ? diagnostics->file : "<text>", diagnostics->text,
                            diagnostics->length, NULL};
@@ -235,10 +234,10 @@ static void render_line(strut_buffer *out, const char *file, const char *kind, s
 
 static void render_one(strut_buffer *out, const strut_diagnostics *diagnostics, const char *kind,
                        const strut_diagnostic *item, strut_cursor *cursor) {
-  render_line(out, text_of(diagnostics, item->place).file, kind, item->place, item->message,
-              cursor);
+  render_line(out, strut_diagnostics_text(diagnostics, item->place).file, kind, item->place,
+              item->message, cursor);
   for (size_t k = 0; k < STRUT_MESSAGE_NOTES && item->note[k]; k++) {
-    strut_used_file in = text_of(diagnostics, item->note_place[k]);
+    strut_used_file in = strut_diagnostics_text(diagnostics, item->note_place[k]);
     strut_cursor own = cursor_in(in);
     render_line(out, in.file, "note", item->note_place[k], item->note[k], &own);
   }
@@ -247,10 +246,6 @@ static void render_one(strut_buffer *out, const strut_diagnostics *diagnostics, 
 void strut_diagnostics_sort(strut_diagnostics *diagnostics) {
   if (diagnostics->count)
     qsort(diagnostics->items, diagnostics->count, sizeof *diagnostics->items, compare);
-}
-
-const char *strut_diagnostics_file(const strut_diagnostics *diagnostics, strut_place place) {
-  return text_of(diagnostics, place).file;
 }
 
 /* What was written, in the arena; NULL: memory is out. */
@@ -269,7 +264,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
   for (size_t i = 0; i < shown; i++) {
     const strut_diagnostic *item = &diagnostics->items[i];
     if (!i || item->place.file != item[-1].place.file)
-      cursor = cursor_in(text_of(diagnostics, item->place));
+      cursor = cursor_in(strut_diagnostics_text(diagnostics, item->place));
     render_one(&out, diagnostics, "error", item, &cursor);
   }
   size_t left = diagnostics->count - shown + diagnostics->unstored;
@@ -280,7 +275,8 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
 const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
   strut_buffer out = {0};
   for (size_t i = 0; i < diagnostics->note_count; i++) {
-    strut_cursor cursor = cursor_in(text_of(diagnostics, diagnostics->notes[i].place));
+    strut_cursor cursor =
+        cursor_in(strut_diagnostics_text(diagnostics, diagnostics->notes[i].place));
     render_one(&out, diagnostics, "note", &diagnostics->notes[i], &cursor);
   }
   return keep_text(diagnostics, &out);

@@ -110,9 +110,9 @@ STRUT_API const char *strut_diagnostics_render_notes(strut_diagnostics *diagnost
 STRUT_API const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most);
 /** Sorts the messages by place. */
 STRUT_API void strut_diagnostics_sort(strut_diagnostics *diagnostics);
-/** The name of the file that a place is in. */
-STRUT_API const char *strut_diagnostics_file(const strut_diagnostics *diagnostics,
-                                             strut_place place);
+/** The text that a place is in; its file is "<text>" where it has no name. */
+STRUT_API strut_used_file strut_diagnostics_text(const strut_diagnostics *diagnostics,
+                                                 strut_place place);
 STRUT_API void strut_diagnostics_free(strut_diagnostics *diagnostics);
 
 /**

@@ -48,10 +48,10 @@ static strut_message *add(strut_messages *to, const char *file, strut_place plac
 static void add_diagnostic(strut_messages *to, const strut_diagnostics *all, const char *severity,
                            const strut_diagnostic *item) {
   strut_message *message =
-      add(to, strut_diagnostics_file(all, item->place), item->place, severity, item->message);
+      add(to, strut_diagnostics_text(all, item->place).file, item->place, severity, item->message);
   for (size_t k = 0; message && k < STRUT_MESSAGE_NOTES && item->note[k]; k++)
     message->note[message->note_count++] = (strut_located){
-        strut_diagnostics_file(all, item->note_place[k]), item->note[k], item->note_place[k]};
+        strut_diagnostics_text(all, item->note_place[k]).file, item->note[k], item->note_place[k]};
 }
 
 void strut_messages_add_diagnostics(strut_messages *to, strut_diagnostics *diagnostics) {

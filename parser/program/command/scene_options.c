@@ -219,7 +219,7 @@ static strut_status report_first(const strut_varied_scenes *scenes, const strut_
   if (first->place.line == 0)
     return strut_fail(error, STRUT_BAD_SCENE, "%s%s%s%s", where, at, between, message);
   return strut_fail(error, STRUT_BAD_SCENE, "%s:%u:%u: %s%s%s%s",
-                    strut_diagnostics_file(diagnostics, first->place), first->place.line,
+                    strut_diagnostics_text(diagnostics, first->place).file, first->place.line,
                     first->place.column, where, at, between, message);
 }
 

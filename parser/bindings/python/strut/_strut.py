@@ -463,7 +463,7 @@ def open(path: str | os.PathLike[str], names: tuple[str, ...], values: tuple[str
 
 
 def open_text(name: str, text: str, names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
-    source = text.encode()
+    source = str.encode(text)
     return Scene(_api.open_text(name, source, len(source), *_pairs(names, values)))
 
 

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NamedTuple, Sequence
 
 from . import _plots, _strut
-from ._results import _Stored
-from ._values import Frozen, UnknownName, numpy, refuse_bytes, unknown
+from ._results import Picklable
+from ._values import UnknownName, numpy, refuse_bytes, unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -84,13 +84,12 @@ def _value(scene: Scene, name: str, value: Any, is_word: bool) -> Any:
     return float(value)
 
 
-class Table(Frozen):
+class Table(Picklable):
     """A sweep's results: a row per point, columns by name. table["velocity"] is an array [SI], a column of
     words such as table["status"] a tuple; table.grid("velocity") has the shape of the axes."""
 
     axes: tuple[str, ...]  #: names of the parameters
     shape: tuple[int, ...]  #: lengths of the axes, or the number of points
-    _raw: _Raw
     _count: int
 
     def __init__(self, raw: _Raw, work: Plan) -> None:
@@ -169,10 +168,3 @@ class Table(Frozen):
 
     def _repr_html_(self) -> str:
         return _plots.things(self, len(self))
-
-    def __getstate__(self) -> dict[str, Any]:
-        raw = self._raw if isinstance(self._raw, _Stored) else _Stored.of(self._raw)
-        return {**self.__dict__, "_raw": raw}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)

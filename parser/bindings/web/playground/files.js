@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that are dropped, chosen, saved; links and commands to copy; elements of the page. */
 
-/** An element with children and with properties, or attributes where their names have a dash. */
-export function make(tag, properties = {}, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(properties))
-    if (name.includes("-") || name === "role") element.setAttribute(name, value);
-    else element[name] = value;
-  element.append(...children);
-  return element;
-}
+/** Makes an element of a tag, properties and children. */
+export const { make } = window.strutPage;
 
 const MOST_BYTES = 2e7;
 const isScene = (name) => /\.(ya?ml|json)$/i.test(name);

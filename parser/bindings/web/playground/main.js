@@ -321,10 +321,8 @@ async function copyLink() {
 }
 
 function saveScene() {
-  const url = URL.createObjectURL(new Blob([editor.text], { type: "application/yaml" }));
-  const download = page.fileName(state.name.replace(/\.\w+$/, ""), ".yaml");
-  make("a", { href: url, download }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 60000);
+  page.save(new Blob([editor.text], { type: "application/yaml" }),
+    page.fileName(state.name.replace(/\.\w+$/, ""), ".yaml"));
 }
 
 const stop = () => {
