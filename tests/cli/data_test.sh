@@ -6,21 +6,22 @@
 # ---- one table in many forms ----
 
 printf 't [s],x [mm],y [mm]\n0,1,-2\n0.5,1.5,\n1,2.25,-3\n' >strut.csv
-printf '\357\273\277"t";"x";"y"\r\ns;mm;mm\r\n"0,0";"1,0";-2,0\r\n0,5;1,5;\r\n1,0;2,25;-3,0\r\n' >machine.csv
+printf '\357\273\277"t";"x";"y"\r\ns;mm;mm\r\n"0,0";"1,0";2,0\r\n0,5;1,5;\r\n1,0;2,25;3,0\r\n' >machine.csv
 printf 'Machine;4711\n\nt (s);x (mm);y (mm);\n0;1;-2;\n0,5;1,5;;\n1,0;2,25;-3;\n' >header.csv
 printf 'mass_A\nt\tx\ty\n0\t0.001\t-0.002\n0.5\t0.0015\tnan\n1.0\t2.25e-3\t-0.003\n' >tracker.tsv
 printf '# of an array\n# t, x, y\n0,10,20\n0.5,15,\n1,22.5,30\n' >pixels.csv
 printf 'scorer,N,N,N,N,N,N\nbodyparts,p,p,p,q,q,q\ncoords,x,y,likelihood,x,y,likelihood\n0,10,20,1,1,1,1\n1,15,,0.5,1,1,1\n2,22.5,30,1,1,1,1\n' >film.csv
+cut -d, -f1-4 film.csv >single.csv # with one body part
 printf 'Frame,p,,q,\n,x,y,x,y\n0,10,20,1,1\n1,15,,1,1\n2,22.5,30,1,1\n' >markers.csv
 yaml forms.yaml <<END
 data:
   strut: {file: strut.csv}
-  machine: {file: machine.csv}
+  machine: {file: machine.csv, units: {y: -1 mm}}
   header: {file: header.csv, header: 3}
   tracker: {file: tracker.tsv, units: {t: s, x: m, y: m}}
   pixels: {file: pixels.csv, header: 2, units: {t: s}, scale: 0.1 mm, flip: y}
   film: {file: film.csv, units: {coords: 1/(2 Hz)}, scale: 0.1 mm, flip: y, weights: likelihood}
-  turned: {file: film.csv, units: {coords: 1/(2 Hz)}, scale: 0.1 mm, flip: x, rotate: 180 deg, shift: [0, 1 mm], skip: 1}
+  turned: {file: single.csv, units: {coords: 1/(2 Hz)}, scale: 0.1 mm, flip: x, rotate: 180 deg, shift: [0, 1 mm], skip: 1}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
 members: {m: {kind: spring, nodes: [a, b], stiffness: 1 N/m}}
 END

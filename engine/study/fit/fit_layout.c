@@ -81,7 +81,8 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     if (flaw) return refuse(layout, m, s, flaw, error);
     sources[s] = (strut_fit_source){-1, -1, 0};
     if (column)
-      sources[s].column = strut_slot_place(table->columns, (size_t)(column - table->columns));
+      sources[s].column =
+          (int64_t)strut_slot_place(table->columns, (size_t)(column - table->columns));
     if (moves)
       sources[s].axis = axis_of(strut_fit_quantity(&setup->experiment, series->of), &places[s]);
     for (size_t k = 0; k < s && sources[s].axis >= 0; k++)

@@ -260,11 +260,13 @@ static strut_status predict_curve(strut_fit_case *one, strut_setup *setup, const
   setup->experiment.interrupt = layout->interrupt;
   strut_status status =
       strut_statics_path(&layout->parts[one->index].study, setup, model, &path, error);
+  double end = path.point_count ? path.points[path.point_count - 1].at.factor : 0.0;
   for (size_t i = 0; i < one->match->count && !status; i++) {
     double at = one->match->at[i], force = strut_goals_force_at(&path, at);
     one->predicted[one->match->series[0].first + i] = force;
     if (isnan(force))
-      status = strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", at);
+      status = strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m; it ends at %g m",
+                          at, end);
   }
   strut_path_free(&path);
   return status;

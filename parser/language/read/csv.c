@@ -195,6 +195,10 @@ static bool is_of_units(reader *self, size_t line) {
   return units > 0;
 }
 
+static bool is_deeplabcut(const reader *self) {
+  return strcmp(head_cell(self, 0, 0), "scorer") == 0;
+}
+
 /*
  * How many lines a header has that does not say: one, and units below; or all above the first number, where the
  * first has less in it than the next, as Tracker's, or is DeepLabCut's.
@@ -202,7 +206,7 @@ static bool is_of_units(reader *self, size_t line) {
 static size_t count_header(reader *self) {
   size_t count = 1, last = (self->line_count < PEEKED_LINES ? self->line_count : PEEKED_LINES) - 1;
   bool more = last > 1 && (count_cells(self, 0, is_filled) < count_cells(self, 1, is_filled) ||
-                           strcmp(head_cell(self, 0, 0), "scorer") == 0);
+                           is_deeplabcut(self));
   while (more && count < last && !count_cells(self, count, is_number)) count++;
   if (!more && last > 1 && !count_cells(self, 1, is_number) && count_cells(self, 2, is_number) &&
       is_of_units(self, 1))
@@ -241,12 +245,12 @@ static void split_title(reader *self, const char *title, strut_csv_title *column
   column->name = strut_arena_text(arena, title, name);
 }
 
-/* A name that is there twice belongs to what is above it: a cell counts until the next one. */
+/* A name that is there twice, or is DeepLabCut's, belongs to what is above it: a cell counts until the next one. */
 static const char *whole_name(reader *self, size_t i, const char *name) {
   size_t count = 0, at = i;
   for (size_t k = 0; k < cells_in(self, self->names); k++)
     count += strcmp(head_cell(self, self->names, k), head_cell(self, self->names, i)) == 0;
-  if (count < 2 || !self->names) return name;
+  if ((count < 2 && !(i > 0 && is_deeplabcut(self))) || !self->names) return name;
   while (at > 0 && !*head_cell(self, self->names - 1, at)) at--;
   const char *of = head_cell(self, self->names - 1, at);
   return *of ? strut_arena_format(&self->csv->arena, "%s.%s", of, name) : name;
@@ -352,10 +356,15 @@ bool strut_csv_is_dimensionless(const char *text) {
 }
 
 bool strut_csv_unit(const char *text, strut_quantity *one) {
-  char whole[110];
+  char whole[110], twice[110];
+  strut_quantity two;
   strut_expression_error error;
   int length = snprintf(whole, sizeof whole, "1 %s", text);
-  return !is_number(text) && length > 0 && (size_t)length < sizeof whole &&
-         (strut_expression_evaluate(whole, NULL, one, &error) ||
-          (strut_expression_evaluate(text, NULL, one, &error) && one->value > 0.0 && !one->bare));
+  snprintf(twice, sizeof twice, "2 %s", text);
+  if (is_number(text) || length < 0 || (size_t)length >= sizeof whole) return false;
+  bool unit = strut_expression_evaluate(whole, NULL, one, &error) &&
+              strut_expression_evaluate(twice, NULL, &two, &error) &&
+              two.value == 2.0 * one->value; /* not "1 -1 mm" */
+  return unit ||
+         (strut_expression_evaluate(text, NULL, one, &error) && one->value != 0.0 && !one->bare);
 }

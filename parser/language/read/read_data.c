@@ -141,8 +141,8 @@ static double find_unit(loader *self, size_t i, int *power) {
   if (column->unit || !*unit || !strut_csv_unit(unit, &q)) return 1.0;
   column->unit = strut_keep_text(self->reader, unit);
   column->dimension = q.dimension;
-  *power = power_of_ten(q.value);
-  return *power ? 1.0 : q.value;
+  *power = power_of_ten(fabs(q.value));
+  return *power ? copysign(1.0, q.value) : q.value;
 }
 
 /* A column's numbers; none where a cell is something else. */
@@ -436,9 +436,12 @@ static void refuse_name(strut_reader *reader, const strut_tree *value, strut_own
                         const strut_data_table *table) {
   const char *dot = strchr(value->text, '.');
   const char *name = strut_arena_text(&reader->scratch, value->text, strcspn(value->text, "."));
-  const strut_named_rows *tables = STRUT_NAMED(reader->tables, reader->table_count);
-  const char *hint = name ? strut_hint_of_rows(reader, name, tables) : "";
-  if (!*hint && value->place.file)
+  const strut_named_rows *rows = table ? STRUT_NAMED(table->columns, table->column_count)
+                                       : STRUT_NAMED(reader->tables, reader->table_count);
+  const char *word = table && dot ? dot + 1 : name, *hint = "";
+  if (name) hint = strut_hint_of_rows(reader, word, rows);
+  if (!*hint && table) hint = strut_list_names(reader, strut_row_name, rows);
+  if (!*hint && value->place.file && !table)
     hint = "; a part takes none of its file: write them under 'data' of the scene that uses it";
   if (!name || (reader->tables_unknown && !table))
     reader->failed = true;
@@ -446,10 +449,8 @@ static void refuse_name(strut_reader *reader, const strut_tree *value, strut_own
     strut_report_error(reader, value->place, "expected a column such as film.x for %s, found '%s'",
                        strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text));
   else if (table)
-    strut_report_error(
-        reader, value->place, "data '%s' have no column '%s'%s", table->name,
-        strut_sanitised_text(reader, dot + 1),
-        strut_hint_of_rows(reader, dot + 1, STRUT_NAMED(table->columns, table->column_count)));
+    strut_report_error(reader, value->place, "data '%s' have no column '%s'%s", table->name,
+                       strut_sanitised_text(reader, dot + 1), hint);
   else
     strut_report_error(reader, value->place, "unknown data '%s' for %s%s",
                        strut_sanitised_text(reader, name), strut_owner_text(reader, owner), hint);

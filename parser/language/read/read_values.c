@@ -365,11 +365,10 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
   return strut_name_map_find(namespace->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
-/* "; there is 'a', 'b'" where there are few. */
-static const char *list_of_names(strut_reader *reader, const strut_namespace *names) {
+const char *strut_list_names(strut_reader *reader, strut_names *names, const void *context) {
   const char *text = "", *name;
-  if (names->name(names->context, 14)) return text;
-  for (size_t i = 0; (name = names->name(names->context, i)); i++)
+  if (names(context, 14)) return text;
+  for (size_t i = 0; (name = names(context, i)); i++)
     text = strut_scratch_text(reader, "%s%s'%s'", text, i ? ", " : "; the names here are ", name);
   return text;
 }
@@ -394,7 +393,7 @@ static int32_t find_named_by_parameter(strut_reader *reader, const strut_tree *v
                                 strut_sanitised_text(reader, set->text));
   strut_report_error(reader, text->place, "%sunknown %s '%s' in parameter '%s'%s", option,
                      names->kind, strut_sanitised_text(reader, text->text), value->text,
-                     *hint ? hint : list_of_names(reader, names));
+                     *hint ? hint : strut_list_names(reader, names->name, names->context));
   strut_diagnose_note(reader->diagnostics, item, value->place, "the parameter is used here");
   return -1;
 }

@@ -211,6 +211,8 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
                        const void *context);
 const char *strut_hint_of_rows(strut_reader *reader, const char *word,
                                const strut_named_rows *rows);
+/** "; the names here are 'a', 'b'" where they are few, or ""; lives in scratch. */
+const char *strut_list_names(strut_reader *reader, strut_names *names, const void *context);
 /** True while suggestions may still be looked for: they are bounded for the file as a whole. */
 bool strut_hints_left(const strut_reader *reader);
 /** "a list of 3", "a mapping", "nothing", "'text'": the value in a message; lives in scratch. */
