@@ -229,15 +229,12 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
   return true;
 }
 
-/* Has a motion at walk->y no stiffness beside a share of the largest? */
-static bool is_loose(strut_path_walk *walk, double share) {
-  return !strut_path_spectrum(&walk->system, walk->y) || strut_path_is_loose(&walk->system, share);
-}
-
-/* Does a path that is stable by the latest spectrum continue with the parameter? */
-static bool leads_on(const strut_path_walk *walk) {
-  int32_t n = walk->system.n;
-  return walk->tangent[n] * walk->next_tangent[n] > 0 && walk->system.spectrum.negative == 0;
+/* Does a stable path continue with the parameter, and, if that is asked, without loose motions? */
+static bool leads_on(strut_path_walk *walk, bool firm) {
+  strut_path_system *system = &walk->system;
+  return walk->tangent[system->n] * walk->next_tangent[system->n] > 0 &&
+         strut_path_spectrum(system, walk->y) && system->spectrum.negative == 0 &&
+         !(firm && strut_path_is_loose(system, FIRM));
 }
 
 /*
@@ -256,7 +253,9 @@ static bool choose_switches(strut_path_walk *walk, const switch_group *self, con
   bool found = find_tangent(walk, self, first, beyond);
   bool turned = found && walk->tangent[n] * walk->next_tangent[n] < 0;
   *thrown = first;
-  if (found && !turned && !is_loose(walk, LOOSE)) return true;
+  if (found && !turned && strut_path_spectrum(&walk->system, walk->y) &&
+      !strut_path_is_loose(&walk->system, LOOSE))
+    return true;
   const strut_path *path = walk->path;
   bool again = path->event_count && walk->arc == path->events[path->event_count - 1].at.arc;
   int most = !again ? 2 : turned ? 1 : 0; /* 2: firm, and leads on; 1: leads on; 0: any */
@@ -264,7 +263,7 @@ static bool choose_switches(strut_path_walk *walk, const switch_group *self, con
   for (int wish = most; wish >= least; wish--)
     for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)
       if (*thrown != first && find_tangent(walk, self, *thrown, beyond) &&
-          (!is_loose(walk, FIRM) || wish < 2) && (leads_on(walk) || wish < 1))
+          (wish < 1 || leads_on(walk, wish == 2)))
         return true;
   *thrown = first;
   if (found) return find_tangent(walk, self, first, beyond);

@@ -10,7 +10,6 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
@@ -193,17 +192,17 @@ static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
     if (strut_path_distance(walk, self->y, rays->ray[k].y) < APART * self->radius) return true;
   if (is_switched(walk, self->y)) return false;
   if (rays->count == STRUT_PATH_RAYS) return true;
-  strut_path_ray *ray = &rays->ray[rays->count];
-  ray->y = strut_arena_copy(&system->arena, self->y, 1, strut_path_bytes(walk));
-  ray->direction = strut_arena_allocate(&system->arena, (size_t)system->n + 1, sizeof(double));
-  walk->failed = walk->failed || !ray->y || !ray->direction;
-  if (walk->failed) return false;
+  strut_path_ray ray = {.y = strut_arena_copy(&system->arena, self->y, 1, strut_path_bytes(walk))};
+  walk->failed =
+      walk->failed || !ray.y || !STRUT_NUMBERS(&system->arena, system->n + 1, &ray.direction);
+  if (walk->failed || !strut_path_spectrum(system, self->y)) return false;
+  ray.negative = system->spectrum.negative;
   for (int32_t j = 0; j <= system->n; j++)
-    ray->direction[j] = (self->y[j] - self->centre[j]) / length;
-  ray->done = false, ray->own = 0;
-  if (!strut_path_spectrum(system, self->y)) return false;
-  ray->negative = system->spectrum.negative;
-  rays->count++;
+    ray.direction[j] = (self->y[j] - self->centre[j]) / length;
+  int32_t at = rays->count++;
+  for (; at > 0 && rays->ray[at - 1].negative > ray.negative; at--)
+    rays->ray[at] = rays->ray[at - 1];
+  rays->ray[at] = ray;
   return true;
 }
 
@@ -335,32 +334,17 @@ static bool find_at_radius(reduction *self, strut_path_rays *rays) {
          search_sphere(self, rays) && !self->rough;
 }
 
-static int compare_rays(const void *first, const void *second) {
-  const strut_path_ray *ray = first, *t = second;
-  return ray->negative != t->negative
-             ? (ray->negative > t->negative) - (ray->negative < t->negative)
-             : (ray->order > t->order) - (ray->order < t->order);
-}
-
 void strut_path_find_rays(strut_path_walk *walk, const double *y, strut_path_rays *rays) {
-  strut_path_rays best = {0};
-  strut_path_ray *room[2] = {0};
-  for (int k = 0; k < 2; k++) {
-    room[k] = strut_arena_allocate(&walk->system.arena, STRUT_PATH_RAYS, sizeof *room[k]);
-    walk->failed = walk->failed || !room[k];
-  }
-  int other = 0;
-  for (size_t i = 0; i < sizeof RADII / sizeof *RADII && !walk->failed; i++) {
+  *rays = (strut_path_rays){0};
+  bool all = false;
+  for (size_t i = 0; i < sizeof RADII / sizeof *RADII && !all && !walk->failed; i++) {
     reduction r = {.w = walk, .centre = y, .radius = RADII[i]};
-    strut_path_rays found = {.ray = room[other], .radius = RADII[i]};
-    r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(walk));
-    walk->failed = walk->failed || !r.y;
-    bool all = r.y && find_at_radius(&r, &found);
+    strut_path_rays found = {.radius = RADII[i]};
+    bool made = STRUT_ALLOCATE(&walk->system.arena, STRUT_NEW(found.ray, STRUT_PATH_RAYS)) &&
+                STRUT_NUMBERS(&r.arena, 2 * (walk->system.n + 1), &r.y);
+    walk->failed = walk->failed || !made;
+    all = made && find_at_radius(&r, &found);
     strut_arena_free(&r.arena);
-    if (found.count > best.count) best = found, other = 1 - other;
-    if (all) break;
+    if (found.count > rays->count) *rays = found;
   }
-  for (int32_t k = 0; k < best.count; k++) best.ray[k].order = k;
-  if (best.count > 0) qsort(best.ray, (size_t)best.count, sizeof *best.ray, compare_rays);
-  *rays = best;
 }

@@ -355,8 +355,7 @@ typedef struct strut_path_ray {
   double *y, *direction; /* (2 n + 2), (n + 1) of unit length */
   int32_t negative;      /* eigenvalues below zero there */
   int32_t own;           /* -1, 1: the path that is walked, before and after; else 0 */
-  int32_t order;
-  bool done; /* it was walked */
+  bool done;             /* it was walked */
 } strut_path_ray;
 
 typedef struct strut_path_rays {

@@ -333,17 +333,17 @@ static bool is_solution(strut_path_system *system, const double *top) {
  */
 static bool solve(strut_path_system *system, const strut_path_planes *planes, const double *top,
                   const double *bottom) {
-  double low, high;
+  double low, high, near = 0.0;
   gsl_vector_view own = gsl_vector_subvector(system->algebra.solution, 0, (size_t)system->n + 1);
-  bool plain = strut_path_solve(system, planes, top, bottom, 0.0);
-  if (!system->lends || system->n == 0 || planes->null) return plain;
-  double far = plain ? gsl_blas_dnrm2(&own.vector) : HUGE_VAL;
+  bool lent = system->lends && system->n > 0 && !planes->null;
   gsl_matrix_minmax(system->algebra.hessian, &low, &high);
-  double stiff = fmax(-low, high);
-  bool lent = strut_path_solve(system, planes, top, bottom, stiff > 0.0 ? TOUCHED * stiff : 1.0) &&
-              is_solution(system, top);
-  if (!plain || (lent && far > ROUNDED * gsl_blas_dnrm2(&own.vector))) return lent;
-  return strut_path_solve(system, planes, top, bottom, 0.0);
+  double stiff = fmax(-low, high), by = stiff > 0.0 ? TOUCHED * stiff : 1.0;
+  lent = lent && strut_path_solve(system, planes, top, bottom, by) && is_solution(system, top);
+  if (lent) near = gsl_blas_dnrm2(&own.vector);
+  if (strut_path_solve(system, planes, top, bottom, 0.0) &&
+      !(lent && gsl_blas_dnrm2(&own.vector) > ROUNDED * near))
+    return true;
+  return lent && strut_path_solve(system, planes, top, bottom, by);
 }
 
 int strut_path_correct(strut_path_system *system, const double *row, double value,
