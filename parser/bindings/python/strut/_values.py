@@ -315,19 +315,14 @@ def from_words(value: Any, path: Sequence[str]) -> Any:
     """
 
     def walk(at: Any, rest: Sequence[str]) -> Any:
-        if isinstance(at, list):
-            return [walk(item, rest) for item in at]
-        if rest and isinstance(at, Mapping):
-            for i in range(len(rest), 0, -1):  # names may have dots
-                word = ".".join(rest[:i])
-                if word in at:
-                    return walk(at[word], rest[i:])
-            return None
-        if rest:
-            return None
-        if isinstance(at, Mapping):
-            return [walk(item, rest) for item in at.values()]
-        return None if isinstance(at, (str, bool)) else at
+        inner = isinstance(at, Mapping)
+        if isinstance(at, list) or (inner and not rest):
+            return [walk(item, rest) for item in (at.values() if inner else at)]
+        if inner:
+            names = (".".join(rest[:i]) for i in range(len(rest), 0, -1))  # names may have dots
+            name = next((name for name in names if name in at), None)
+            return None if name is None else walk(at[name], rest[name.count(".") + 1 :])
+        return None if rest or isinstance(at, (str, bool)) else at
 
     nested = walk(value, path)
     return fixed(_padded(nested)) if isinstance(nested, list) else None
