@@ -29,6 +29,7 @@ head -n 1 curve/path.csv | grep -qF 'negative_eigenvalues,event,left.x [m],left.
 expect 0 path arch.yaml --load weight --until 12 --json
 same curve/path.json "$work/out"
 shows 0 "5 steps led to the factor" path arch.yaml --load weight --until 12 --steps 5
+shows 0 "stable" path arch.yaml --load weight --until -3
 
 # A load that nothing resists, one that is not there, one that does nothing.
 tells 1 "unknown load 'wait'; the scene's loads are: weight, wind" path arch.yaml --load wait
