@@ -6,6 +6,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/study/fit/fit_parts.h"
+#include "engine/study/search/optimisers.h"
 #include "engine/study/sweep/sweep.h"
 
 /* The number of a column among those of numbers, or -1. */
@@ -234,6 +235,49 @@ void strut_fit_layout_free(strut_fit_layout *layout) {
   strut_equilibrium_cache_free(layout->standing);
   strut_arena_free(&layout->arena);
   *layout = (strut_fit_layout){0};
+}
+
+/* ---- parameters ---- */
+
+double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter) {
+  const strut_fit_unknown *of = &layout->unknowns[i];
+  return of->variable ? strut_search_value(of->variable, parameter - 1.0).number
+                      : (parameter - 1.0) * of->scale;
+}
+
+double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value) {
+  const strut_fit_unknown *of = &layout->unknowns[i];
+  return 1.0 + (of->variable
+                    ? strut_search_number(of->variable, (strut_study_value){.number = value})
+                    : value / of->scale);
+}
+
+double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter) {
+  const strut_search_variable *variable = layout->unknowns[i].variable;
+  if (!variable) return layout->unknowns[i].scale;
+  if (!variable->logarithmic) return variable->to - variable->from;
+  return strut_fit_value(layout, i, parameter) * log(variable->to / variable->from);
+}
+
+void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
+                           strut_study_value *values) {
+  strut_grid_values(layout->plan->study, row, values);
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+    values[layout->fit->column + i - layout->aligned_count].number =
+        strut_fit_value(layout, i, parameters[i]);
+}
+
+void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters) {
+  const strut_study_fit *fit = layout->fit;
+  strut_search_spread spread =
+      strut_search_spread_begin(fit->variable_count + layout->aligned_count, (uint64_t)fit->seed);
+  for (size_t i = 0; i < layout->parameters; i++) {
+    const strut_fit_unknown *of = &layout->unknowns[i];
+    size_t k = i - layout->aligned_count;
+    parameters[i] = !of->variable ? strut_fit_parameter(layout, i, of->starts[start % 4 == 2])
+                    : start == 0  ? 1.0 + strut_search_start(of->variable)
+                                  : 1.0 + strut_search_spread_at(&spread, start - 1, k);
+  }
 }
 
 /* ---- what determines the parameters best, from the model alone ---- */
