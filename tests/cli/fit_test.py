@@ -220,7 +220,7 @@ def statics():
     hold = [2 * k * (math.hypot(a, h + u) - rest) * (h + u) / math.hypot(a, h + u) for u in down]
     table("curve.csv", {"u": down, "F": hold}, 0.2, header="u [m]\tF [N]", mark="\t")
     write("truss.yaml", """strut: 1
-name: truss
+run: {duration: 1 s}
 parameters: {k: 15 kN/m, height: 25 mm}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0.1, height], mass: 0.1 kg, fixed: x}, c: {position: [0.2, 0], fixed: both}}
 members: {l: {kind: bar, nodes: [a, b], stiffness: k}, r: {kind: bar, nodes: [b, c], stiffness: k}}
@@ -235,7 +235,7 @@ fit:
   match:
     curve: {{displacement: curve.u, force: curve.F, noise: 0.2 N}}
     hammer: {{compute: modes, frequency_1: {hertz} Hz, noise: 0.05 Hz}}
-    shape: {{compute: modes, total_mass: 0.1 kg, noise: 1 g}}
+    shape: {{b.y: 30 mm, noise: 0.1 mm}}
   starts: 2
 """)
     identified(found, k=k, height=h)

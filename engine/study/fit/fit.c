@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/study/fit/fit_parts.h"
-#include "engine/study/search/optimisers.h"
 #include "engine/study/sweep/sweep.h"
 
 /* Of motions a fit takes so much of the time first; and steps of the method in all but the last of them. */
@@ -77,50 +76,7 @@ static int32_t matches_delay(const strut_study_fit *fit, size_t k) {
   return m;
 }
 
-/* ---- parameters ---- */
-
-double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter) {
-  const strut_fit_unknown *of = &layout->unknowns[i];
-  return of->variable ? strut_search_value(of->variable, parameter - 1.0).number
-                      : (parameter - 1.0) * of->scale;
-}
-
-double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value) {
-  const strut_fit_unknown *of = &layout->unknowns[i];
-  return 1.0 + (of->variable
-                    ? strut_search_number(of->variable, (strut_study_value){.number = value})
-                    : value / of->scale);
-}
-
-double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter) {
-  const strut_search_variable *variable = layout->unknowns[i].variable;
-  if (!variable) return layout->unknowns[i].scale;
-  if (!variable->logarithmic) return variable->to - variable->from;
-  return strut_fit_value(layout, i, parameter) * log(variable->to / variable->from);
-}
-
-void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
-                           strut_study_value *values) {
-  strut_grid_values(layout->plan->study, row, values);
-  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
-    values[layout->fit->column + i - layout->aligned_count].number =
-        strut_fit_value(layout, i, parameters[i]);
-}
-
 /* ---- one fit ---- */
-
-void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters) {
-  const strut_study_fit *fit = layout->fit;
-  strut_search_spread spread =
-      strut_search_spread_begin(fit->variable_count + layout->aligned_count, (uint64_t)fit->seed);
-  for (size_t i = 0; i < layout->parameters; i++) {
-    const strut_fit_unknown *of = &layout->unknowns[i];
-    size_t k = i - layout->aligned_count;
-    parameters[i] = !of->variable ? strut_fit_parameter(layout, i, of->starts[start % 4 == 2])
-                    : start == 0  ? 1.0 + strut_search_start(of->variable)
-                                  : 1.0 + strut_search_spread_at(&spread, start - 1, k);
-  }
-}
 
 /* Fits all parameters but `held` (-1: none), in a few steps unless that is 0, which need not end near. */
 static void solve(strut_fit_case *one, int32_t held, int32_t steps, place *to) {
@@ -443,47 +399,39 @@ static strut_status run_stage(fitting *self, size_t first, size_t count, bool ne
 
 /* ---- what the best fit says ---- */
 
-/* Derivatives there, all numbers, and how coarse their times are. False: the model cannot be computed beside it. */
-static bool describe_best(fitting *self, strut_fit_case *one, double *residual, double *predicted,
-                          double *jacobian) {
+/* Describes the best fit: derivatives, numbers, how coarse its times are. Or why the first start has no residuals. */
+static strut_status describe(fitting *self, strut_fit_case *one) {
   const strut_fit_layout *layout = self->layout;
   strut_fit_result *result = self->result;
-  strut_least_squares problem = strut_fit_problem(one);
-  if (!strut_least_squares_jacobian(&problem, self->best.at, residual, jacobian) ||
-      !strut_fit_spectrum_find(jacobian, layout->count, layout->parameters, &result->arena,
-                               &self->spectrum) ||
-      !problem.residuals(one, self->best.at, residual))
-    return false;
-  strut_fit_align_all(one, self->best.at, predicted);
-  result->coarse = strut_fit_find_coarse(one, self->best.at, predicted, &result->coarseness);
-  for (size_t k = 0; k < layout->count; k++)
-    result->numbers[k].predicted = predicted[k], result->numbers[k].residual = residual[k];
-  return true;
-}
-
-/* Describes the best fit, or says why there are no residuals at the first start. */
-static strut_status describe(fitting *self, strut_fit_case *one) {
-  strut_fit_result *result = self->result;
   strut_error *error = self->points.error;
-  double *residual, *predicted, *jacobian, at[STRUT_LEAST_SQUARES_MOST];
-  size_t count = result->number_count = self->layout->count;
-  if (!STRUT_ALLOCATE(&one->arena, STRUT_NEW(residual, count), STRUT_NEW(predicted, count),
-                      STRUT_NEW(jacobian, count * self->layout->parameters + 1)) ||
-      !(result->numbers = strut_arena_copy(&result->arena, self->layout->numbers, count,
-                                           sizeof *result->numbers)))
+  strut_least_squares problem = strut_fit_problem(one);
+  double *residual, *predicted, *jacobian, *at = self->best.at;
+  size_t count = result->number_count = layout->count;
+  result->numbers =
+      strut_arena_copy(&result->arena, layout->numbers, count, sizeof *result->numbers);
+  if (!result->numbers ||
+      !STRUT_ALLOCATE(&one->arena, STRUT_NEW(residual, count), STRUT_NEW(predicted, count),
+                      STRUT_NEW(jacobian, count * layout->parameters + 1)))
     return strut_no_memory(error, "");
-  if (result->found) {
-    bool fine = describe_best(self, one, residual, predicted, jacobian);
-    if (one->status) return strut_fail(error, one->status, "%s", one->error.message);
-    return fine ? STRUT_OK
-                : strut_fail(error, STRUT_DIVERGED,
-                             "the model cannot be computed beside the best fit");
+  if (!result->found) {
+    strut_fit_choose_start(layout, 0, at);
+    problem.residuals(one, at, residual);
+    result->missing = one->missing;
+    result->reason = strut_arena_format(&result->arena, "%s", one->error.message);
+    return result->reason ? STRUT_OK : strut_no_memory(error, "");
   }
-  strut_fit_choose_start(self->layout, 0, at);
-  strut_fit_problem(one).residuals(one, at, residual);
-  result->missing = one->missing;
-  result->reason = strut_arena_format(&result->arena, "%s", one->error.message);
-  return result->reason ? STRUT_OK : strut_no_memory(error, "");
+  bool fine = strut_least_squares_jacobian(&problem, at, residual, jacobian) &&
+              strut_fit_spectrum_find(jacobian, count, layout->parameters, &result->arena,
+                                      &self->spectrum) &&
+              problem.residuals(one, at, residual);
+  if (fine) strut_fit_align_all(one, at, predicted);
+  if (fine) result->coarse = strut_fit_find_coarse(one, at, predicted, &result->coarseness);
+  if (one->status) return strut_fail(error, one->status, "%s", one->error.message);
+  for (size_t k = 0; k < count; k++)
+    result->numbers[k].predicted = predicted[k], result->numbers[k].residual = residual[k];
+  return fine ? STRUT_OK
+              : strut_fail(error, STRUT_DIVERGED,
+                           "the model cannot be computed beside the best fit");
 }
 
 /* The best of the first `count` fits, its scale of errors, and the rise of the sum at the ends of intervals. */

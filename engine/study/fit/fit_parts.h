@@ -105,6 +105,23 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
                                    strut_fit_layout *layout, strut_error *error);
 void strut_fit_layout_free(strut_fit_layout *layout);
 
+/** From a parameter of the problem to its value in SI, and back; and by how much one changes with the other. */
+double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter);
+double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value);
+double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter);
+/** The values of all columns of the axes in a row, with those of the parameters. */
+void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
+                           strut_study_value *values);
+
+/** Smaller residuals than this part of the range of the numbers are those of the runs themselves. */
+#define STRUT_FIT_EXACT 1e-8
+
+/** So many places are tried where the model cannot be computed at a start. */
+enum { STRUT_FIT_MOST_PLACES = 50 };
+
+/** Parameters (parameters) where a start begins: the first where the study says, the others spread evenly. */
+void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters);
+
 /* ---- fit_residuals.c ---- */
 
 /** The time that the numbers of a match take [s]. */
@@ -134,25 +151,6 @@ const strut_fit_match *strut_fit_find_coarse(strut_fit_case *one, const double *
                                              const double *at, double *coarseness);
 /** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
-
-/* ---- fit.c ---- */
-
-/** From a parameter of the problem to its value in SI, and back; and by how much one changes with the other. */
-double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter);
-double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value);
-double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter);
-/** The values of all columns of the axes in a row, with those of the parameters. */
-void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
-                           strut_study_value *values);
-
-/** Smaller residuals than this part of the range of the numbers are those of the runs themselves. */
-#define STRUT_FIT_EXACT 1e-8
-
-/** So many places are tried where the model cannot be computed at a start. */
-enum { STRUT_FIT_MOST_PLACES = 50 };
-
-/** Parameters (parameters) where a start begins: the first where the study says, the others spread evenly. */
-void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters);
 
 /* ---- fit_report.c: the result notes where memory is out ---- */
 

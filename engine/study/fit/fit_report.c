@@ -15,8 +15,8 @@
 /* A sum of squares that a right model exceeds this rarely is not explained. */
 static const double RARE = 1e-4;
 
-/* Nor are successive residuals that are correlated by so many standard errors. */
-static const double CORRELATED = 5.0;
+/* Nor are successive residuals, if there are more than the fewest, that are correlated by so many standard errors. */
+static const double CORRELATED = 5.0, FEWEST = 10.0;
 
 /* But where the squares of all sum up to so little, they put no parameter off by more than a tenth of its error. */
 static const double NEGLIGIBLE = 0.01;
@@ -65,21 +65,7 @@ static const char *keep_text(strut_fit_result *result, const char *text) {
 
 /* ---- residuals ---- */
 
-/* Correlation of successive residuals of a series, in its standard errors; NAN: too few. */
-static double find_lag(const strut_fit_number *number, size_t count) {
-  double sum = 0.0, square = 0.0, last = 0.0;
-  size_t used = 0;
-  for (size_t i = 0; i < count; i++) {
-    double residual = number[i].residual;
-    if (residual == 0.0) continue; /* a gap */
-    sum += last * residual;
-    square += residual * residual;
-    last = residual;
-    used++;
-  }
-  return used > 10 ? sum / square * sqrt((double)used) : (double)NAN;
-}
-
+/* Sums of a match's residuals, and how successive ones of each series are correlated, where there are enough. */
 static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_fit_result *result) {
   const strut_fit_match *match = &layout->fit->matches[m];
   strut_fit_residuals *of = &result->residuals[m];
@@ -87,12 +73,18 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   *of = (strut_fit_residuals){.match = match, .lag = (double)NAN};
   for (size_t s = 0; s < match->series_count; s++) {
     const strut_fit_number *number = &result->numbers[match->series[s].first];
-    double lag = match->kind == STRUT_FIT_MOTION ? find_lag(number, match->count) : (double)NAN;
-    if (!isnan(lag)) lags += lag, series += 1.0;
+    double products = 0.0, own = 0.0, last = 0.0, used = 0.0;
     for (size_t i = 0; i < match->count; i++) {
-      square += number[i].residual * number[i].residual;
-      of->used += number[i].residual != 0.0;
+      double residual = number[i].residual;
+      if (residual == 0.0) continue; /* a gap */
+      products += last * residual;
+      own += residual * residual, square += residual * residual;
+      last = residual;
+      used += 1.0;
     }
+    of->used += (int64_t)used;
+    if (match->kind != STRUT_FIT_MOTION || used <= FEWEST) continue;
+    lags += products / own * sqrt(used), series += 1.0;
   }
   if (series > 0.0) of->lag = lags / sqrt(series);
   of->rms = layout->parts[m].noise * sqrt(square / fmax(1.0, (double)of->used));
@@ -105,8 +97,8 @@ static const char *doubt_unit(strut_fit_result *result, const strut_fit_match *m
   const strut_data_column *column = match->series[0].column;
   double sums[2][3] = {{0.0}};
   for (size_t i = 0; column->name && i < match->count; i++) {
-    const double pair[] = {column->values[i],
-                           result->numbers[match->series[0].first + i].predicted};
+    const strut_fit_number *number = &result->numbers[match->series[0].first + i];
+    const double pair[] = {number->measured, number->predicted};
     for (int k = 0; k < 2 && !isnan(pair[0]); k++)
       sums[k][0] += 1.0, sums[k][1] += pair[k], sums[k][2] += pair[k] * pair[k];
   }
@@ -452,19 +444,6 @@ STRUT_VALUES_HERE(omission_values, OMISSION, )
   X("part", "1", NUMBERS(d->part, result_of(of)->variable_count), "of each parameter in it")
 STRUT_VALUES_HERE(direction_values, DIRECTION, const strut_fit_direction *d = of->at)
 
-#define NUMBER_OF_MATCH(X)                                                                         \
-  X("match", "", TEXT(n->match->name), "", .column = {"match"})                                    \
-  X("of", "", TEXT(n->series->of), "", .column = {"of"})                                           \
-  X("at", "", NUMBER(n->at), "", .column = {"at"})                                                 \
-  X("measured", "", NUMBER(n->measured), "", .column = {"measured"})                               \
-  X("predicted", "", NUMBER(n->predicted), "", .column = {"predicted"})                            \
-  X("residual", "", NUMBER(n->residual), "", .column = {"residual"})
-STRUT_VALUES_HERE(number_values, NUMBER_OF_MATCH, const strut_fit_number *n = of->at)
-
-#define NUMBERS_OF_FIT(X)                                                                          \
-  X("numbers", "", LIST(r->numbers, r->number_count), "", .rows = &number_values)
-STRUT_VALUES_HERE(fit_numbers, NUMBERS_OF_FIT, const strut_fit_result *r = of->at)
-
 static strut_value correlations_of(const strut_result_object *of, size_t i) {
   const strut_fit_result *r = of->at;
   return STRUT_VALUE_AS_NUMBERS(r->correlation + i * r->variable_count, r->variable_count);
@@ -557,13 +536,21 @@ static char *covariance_csv(const strut_fit_result *result) {
 
 /* Of the numbers that were measured. */
 static char *residuals_csv(const strut_fit_result *result) {
-  strut_fit_result given = {.numbers = strut_allocate(result->number_count, sizeof *given.numbers)};
-  for (size_t k = 0; k < result->number_count && given.numbers; k++)
-    if (!isnan(result->numbers[k].measured))
-      given.numbers[given.number_count++] = result->numbers[k];
-  char *csv = given.numbers ? strut_values_csv(&fit_numbers, "numbers", NULL, &given, NULL) : NULL;
-  strut_release(given.numbers);
-  return csv;
+  strut_buffer csv = {0};
+  strut_buffer_add(&csv, "match,of,at,measured,predicted,residual\n");
+  for (size_t k = 0; k < result->number_count; k++) {
+    const strut_fit_number *number = &result->numbers[k];
+    const double cells[] = {number->at, number->measured, number->predicted, number->residual};
+    if (isnan(number->measured)) continue;
+    strut_buffer_add(&csv, "%s,", number->match->name);
+    strut_csv_add_text(&csv, "%s", number->series->of);
+    for (size_t i = 0; i < sizeof cells / sizeof *cells; i++) {
+      strut_buffer_add(&csv, ",");
+      strut_csv_add_number(&csv, cells[i]);
+    }
+    strut_buffer_add(&csv, "\n");
+  }
+  return strut_buffer_take(&csv);
 }
 
 static char *fitted_yaml(const strut_fit_result *result, const char *model) {
