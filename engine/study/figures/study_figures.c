@@ -151,9 +151,7 @@ static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_
   strut_plot plot = plot_of(plan, f, path);
   strut_study_figure figure = *f; /* points over two variables, the best ringed; else: */
   size_t count = table->row_count + 1;
-  searched_rows rows = {
-      .table = table,
-  };
+  searched_rows rows = {.table = table};
   const char *unit = search->goal.program.unit;
   strut_status status = STRUT_ALLOCATE(&own.arena, STRUT_NEW(rows.best, count),
                                        STRUT_NEW(rows.shown, count), STRUT_NEW(rows.ringed, count))
