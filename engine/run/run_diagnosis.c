@@ -229,12 +229,12 @@ strut_status strut_run_check_balance(const strut_run *run) {
   int32_t lost = strut_run_find_lost_node(run->model, run->state);
   if (lost >= 0) return strut_run_fail_lost_node(run, lost);
   if (isfinite(energy->residual) && isfinite(energy->moved)) return check_losses(run);
-  return strut_fail(run->error, STRUT_DIVERGED,
-                    "the energy balance (%s) is no longer a finite number at t = %.9g s with dt = "
-                    "%g s, and fastest is node '%s'; look for a stiffness, law or drive that is far "
-                    "too large there",
-                    first_not_finite(energy), strut_run_time(run), run->dt,
-                    fastest_node(run, false));
+  return strut_fail(
+      run->error, STRUT_DIVERGED,
+      "the energy balance (%s) is no longer a finite number at t = %.9g s with dt = "
+      "%g s, and fastest is node '%s'; look for a stiffness, law or drive that is far "
+      "too large there",
+      first_not_finite(energy), strut_run_time(run), run->dt, fastest_node(run, false));
 }
 
 strut_status strut_run_fail_method(const strut_run *run) {
