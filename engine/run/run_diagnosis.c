@@ -196,23 +196,11 @@ static strut_status check_losses(const strut_run *run) {
       monitor->giver == STRUT_LOSS_FRICTION ? " or a smaller friction" : "");
 }
 
-/* What the balance sums, in its order. */
 static const char *first_not_finite(const strut_energy *energy) {
-  const struct {
-    const char *name;
-    double value;
-  } parts[] = {{"kinetic energy", energy->kinetic},
-               {"energy of the members", energy->elastic},
-               {"energy of the ground's springs", energy->contact},
-               {"work of the drives", energy->drive_work},
-               {"work of the loads", energy->load_work},
-               {"work of moving supports", energy->support_work},
-               {"loss of the members' dampers", energy->dissipated_members},
-               {"loss of the ground's dampers", energy->dissipated_contact},
-               {"loss of friction", energy->dissipated_friction}};
-  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
-    if (!isfinite(parts[i].value)) return parts[i].name;
-  return "energy";
+#define STRUT_ENERGY_CHECK(name, kind, label)                                                      \
+  if (!isfinite(energy->name)) return label;
+  STRUT_ENERGY_TABLE(STRUT_ENERGY_CHECK)
+  return "residual";
 }
 
 strut_status strut_run_check_states(const strut_run *run) {
@@ -241,11 +229,12 @@ strut_status strut_run_check_balance(const strut_run *run) {
   int32_t lost = strut_run_find_lost_node(run->model, run->state);
   if (lost >= 0) return strut_run_fail_lost_node(run, lost);
   if (isfinite(energy->residual) && isfinite(energy->moved)) return check_losses(run);
-  return strut_fail(run->error, STRUT_DIVERGED,
-                    "the %s is no longer a finite number at t = %.9g s with dt = %g s, and fastest "
-                    "is node '%s'; look for a stiffness, law or drive that is far too large there",
-                    first_not_finite(energy), strut_run_time(run), run->dt,
-                    fastest_node(run, false));
+  return strut_fail(
+      run->error, STRUT_DIVERGED,
+      "the energy balance (%s) is no longer a finite number at t = %.9g s with dt = "
+      "%g s, and fastest is node '%s'; look for a stiffness, law or drive that is far "
+      "too large there",
+      first_not_finite(energy), strut_run_time(run), run->dt, fastest_node(run, false));
 }
 
 strut_status strut_run_fail_method(const strut_run *run) {

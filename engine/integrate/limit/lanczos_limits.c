@@ -40,7 +40,8 @@ void strut_apply_inverse_mass(strut_krylov_basis *space, double *vector) {
   for (int32_t i = 0; i < tangent->n; i++) vector[i] = acceleration[tangent->coordinate[i]];
 }
 
-void strut_tangent_mass(strut_krylov_basis *space, const double *vector, double *y) {
+/* y = M x. */
+static void apply_mass(strut_krylov_basis *space, const double *vector, double *y) {
   const strut_model *model = space->model;
   const strut_tangent *tangent = space->tangent;
   size_t both = (size_t)model->length;
@@ -77,7 +78,7 @@ static double normalise(strut_krylov_basis *space, double *vector) {
   double largest = strut_largest_magnitude(vector, n);
   if (!(largest > 0.0 && largest < HUGE_VAL)) return 0.0;
   for (int32_t i = 0; i < n; i++) vector[i] /= largest;
-  strut_tangent_mass(space, vector, space->image);
+  apply_mass(space, vector, space->image);
   double size = sqrt(fmax(0.0, strut_dot(vector, space->image, n)));
   if (!(size > 0.0)) return 0.0;
   for (int32_t i = 0; i < n; i++) vector[i] /= size, space->image[i] /= size;
@@ -203,7 +204,7 @@ static bool first_vector(lanczos *self) {
   int32_t n = self->space->tangent->n;
   for (int32_t i = 0; i < n; i++)
     self->v[i] = stirred((uint64_t)i), self->u[i] = self->before[i] = 0.0;
-  strut_tangent_mass(self->space, self->v, self->r);
+  apply_mass(self->space, self->v, self->r);
   return next_vector(self) > 0;
 }
 

@@ -85,17 +85,19 @@ double strut_verlet_limit(double k, double d) {
   return inside / scale;
 }
 
-double strut_euler_limit(double k, double d) {
+/* Semi-implicit Euler: (sqrt(d^2 + 4 k) - d) / k. */
+static double euler_limit(double k, double d) {
   if (!(k > 0.0)) return d > 0.0 ? 2.0 / d : HUGE_VAL;
   return 4.0 / (d + sqrt(d * d + 4.0 * k));
 }
 
-double strut_region_limit(strut_region region, double re, double im, double k, double d) {
+/* The limit of a region for an eigenvalue re + i im of a mode with k and d. */
+static double region_limit(strut_region region, double re, double im, double k, double d) {
   if (re > 0.0) k = im * im, d = 0.0; /* grows by itself, whatever the step */
   switch (region) {
     case STRUT_REGION_RK4: return strut_rk4_limit(re, im);
     case STRUT_REGION_VERLET: return strut_verlet_limit(k, fmax(d, 0.0));
-    case STRUT_REGION_EULER: return strut_euler_limit(k, fmax(d, 0.0));
+    case STRUT_REGION_EULER: return euler_limit(k, fmax(d, 0.0));
     case STRUT_REGION_ALL:
     case STRUT_REGIONS: break;
   }
@@ -269,7 +271,7 @@ static void keep_to_relaxation(const strut_model *model, strut_step_limit *limit
   double rate = fastest_relaxation(model);
   if (!(rate > 0.0)) return;
   for (strut_region region = 0; region < STRUT_REGIONS; region++)
-    limit->of[region] = fmin(limit->of[region], strut_region_limit(region, -rate, 0.0, 0.0, rate));
+    limit->of[region] = fmin(limit->of[region], region_limit(region, -rate, 0.0, 0.0, rate));
   limit->limit = limit->of[STRUT_REGION_RK4];
 }
 

@@ -11,12 +11,6 @@ STRUT_API double strut_rk4_limit(double re, double im);
 /** Velocity Verlet with forces at the predicted velocity v + h a; k [1/s^2], d [1/s]. 2/omega without damping. */
 STRUT_API double strut_verlet_limit(double k, double d);
 
-/** Semi-implicit Euler: (sqrt(d^2 + 4 k) - d) / k. */
-STRUT_API double strut_euler_limit(double k, double d);
-
-/** The limit of a region for an eigenvalue re + i im of a mode with k and d. */
-STRUT_API double strut_region_limit(strut_region region, double re, double im, double k, double d);
-
 /**
  * Data of a region that the monitor of the step limit uses. A step h is stable where no motion's
  * quotient of h^2 stiff K + h damp D exceeds 1, for each of the sets.

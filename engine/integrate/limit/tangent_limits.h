@@ -29,8 +29,6 @@ bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *ta
                                strut_arena *arena, strut_krylov_basis *space);
 /** x becomes M^-1 x, through what rigid bars allow. */
 void strut_apply_inverse_mass(strut_krylov_basis *space, double *vector);
-/** y = M x. */
-void strut_tangent_mass(strut_krylov_basis *space, const double *vector, double *y);
 /** y = a K x + b D x; x and y apart. */
 void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *vector,
                          double *y);

@@ -131,9 +131,10 @@ static strut_magnitude combine_magnitudes(strut_operation operation, strut_magni
   return result;
 }
 
-strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *definition,
-                                                 const size_t *index, const strut_magnitude *value,
-                                                 strut_magnitude *stack) {
+/* Evaluates the program on magnitudes: sums take the larger size and add range and rounding. */
+static strut_magnitude evaluate_magnitude(const strut_quantity_definition *definition,
+                                          const size_t *index, const strut_magnitude *value,
+                                          strut_magnitude *stack) {
   size_t top = 0;
   for (size_t i = 0; i < definition->length; i++) {
     const strut_instruction *instruction = &definition->program[i];
@@ -599,8 +600,8 @@ static void fill_measured(strut_quantities *quantities, strut_meter *meter, stru
   bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE ||
                  take == STRUT_TAKE_RISE;
   bool cancels = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
-  strut_magnitude made = strut_quantity_program_magnitude(
-      meter->definition, meter->index, quantities->sizes, quantities->size_stack);
+  strut_magnitude made = evaluate_magnitude(meter->definition, meter->index, quantities->sizes,
+                                            quantities->size_stack);
   double size = fmax(made.size, meter->largest), window = quantities->time - quantities->begin;
   double per = take == STRUT_TAKE_RATE ? window : 1.0;
   bool summed = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_RMS;

@@ -71,11 +71,6 @@ typedef struct strut_magnitude {
   double still;     /* that where the value is at most 1, as counts in an exponential */
 } strut_magnitude;
 
-/** Evaluates the program on magnitudes: sums take the larger size and add range and rounding. */
-strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *definition,
-                                                 const size_t *index, const strut_magnitude *value,
-                                                 strut_magnitude *stack);
-
 /*
  * Measured quantities of a run: evaluated over the pieces of the motion in the window, between their
  * ends too, and reduced over it and over each of its periods (meter.h).

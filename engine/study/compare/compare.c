@@ -392,11 +392,10 @@ static strut_status study_motion(facts *f, const strut_model *model) {
                          : NULL;
   f->missing[MOTION] = f->missing[WINDOW] = none;
   if (none) return STRUT_OK;
-  strut_snapshot end = {
-      .q = strut_arena_allocate(f->arena, (size_t)model->length, sizeof *end.q),
-      .v = strut_arena_allocate(f->arena, (size_t)model->length, sizeof *end.v),
-      .memory = strut_arena_allocate(f->arena, strut_history_count(model), sizeof *end.memory)};
-  if (!end.q || !end.v || !end.memory) return STRUT_NO_MEMORY;
+  strut_snapshot end = {0};
+  if (!STRUT_NUMBERS(f->arena, model->length, &end.q, &end.v) ||
+      !STRUT_NUMBERS(f->arena, strut_history_count(model), &end.memory))
+    return STRUT_NO_MEMORY;
   experiment->accuracy = f->options->accuracy;
   experiment->steady.wanted = experiment->periods > 0.0;
   experiment->quantity_count = 0; /* the accuracy is that of the velocity */

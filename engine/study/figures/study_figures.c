@@ -151,12 +151,10 @@ static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_
   strut_plot plot = plot_of(plan, f, path);
   strut_study_figure figure = *f; /* points over two variables, the best ringed; else: */
   size_t count = table->row_count + 1;
-  searched_rows rows = {.table = table,
-                        .best = strut_arena_allocate(&own.arena, count, sizeof *rows.best),
-                        .shown = strut_arena_allocate(&own.arena, count, sizeof *rows.shown),
-                        .ringed = strut_arena_allocate(&own.arena, count, sizeof *rows.ringed)};
+  searched_rows rows = {.table = table};
   const char *unit = search->goal.program.unit;
-  strut_status status = rows.best && rows.shown && rows.ringed
+  strut_status status = STRUT_ALLOCATE(&own.arena, STRUT_NEW(rows.best, count),
+                                       STRUT_NEW(rows.shown, count), STRUT_NEW(rows.ringed, count))
                             ? strut_table_choose(table, STRUT_NO_COLUMN, NULL, NULL, &own, error)
                             : strut_no_memory(error, "while drawing");
   if (status) return strut_arena_free(&own.arena), status;
@@ -226,9 +224,10 @@ strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study 
   for (size_t i = 0; i < last; i++)
     over = of, of += axes[i].column_count, points *= (size_t)axes[i].count;
   bool one = points == 1, numbers = one || !axes[last - 1].columns[0].word;
-  bool *shown = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *shown);
-  const char **who = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *who);
-  strut_status status = shown && who
+  bool *shown;
+  const char **who;
+  strut_status status = STRUT_ALLOCATE(&own.arena, STRUT_NEW(shown, table->row_count + 1),
+                                       STRUT_NEW(who, table->row_count + 1))
                             ? strut_table_choose(table, STRUT_NO_COLUMN, NULL, NULL, &own, error)
                             : strut_no_memory(error, "while drawing");
   *drawn = !status && numbers && choose_indices(table, of, one, shown, who);

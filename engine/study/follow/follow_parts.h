@@ -14,8 +14,6 @@
 /** Finds the smallest kicks that a stable motion y (both) at the system's value does not survive. */
 bool strut_follow_push(strut_follow_system *system, const double *unknowns,
                        strut_follow_basin *basin);
-/** A copy of a text that belongs to the result; NULL of NULL, or out of memory. */
-char *strut_follow_text(strut_follow_result *result, const char *text);
 /** Adds a sentence to the result's notes. */
 __attribute__((format(printf, 2, 3))) void strut_follow_note(strut_follow_result *result,
                                                              const char *format, ...);
@@ -29,9 +27,6 @@ strut_status strut_follow_find_curves(const strut_follow_options *options,
                                       strut_error *error);
 /** Of a multiplier. */
 extern const strut_value_rows strut_follow_multiplier_values;
-/** Headers and cells of the axes at their values as CSV, each with a comma behind it, in the arena. */
-bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *values,
-                       strut_arena *arena, const char *before[2]);
 
 /* A study that follows motions: all branches over a parameter at every point of its axes.
  *

@@ -170,11 +170,31 @@ static counts count_branches(const strut_follow_result *result) {
   return c;
 }
 
+/* Headers and cells of the axes at their values as CSV, each with a comma behind it, in the arena. */
+static bool list_axes(const strut_sweep_plan *plan, const strut_study_value *values,
+                      strut_arena *arena, const char *before[2]) {
+  strut_buffer names = {0}, cells = {0};
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    strut_study_table_add_name(&names, &plan->columns[i]);
+    if (values[i].word)
+      strut_csv_add_text(&cells, "%s", values[i].word);
+    else
+      strut_csv_add_number(&cells, isfinite(values[i].number) ? values[i].number : (double)NAN);
+    strut_buffer_add(&cells, ",");
+  }
+  bool fine = !names.failed && !cells.failed;
+  before[0] = fine ? strut_arena_format(arena, "%s", names.text ? names.text : "") : NULL;
+  before[1] = fine ? strut_arena_format(arena, "%s", cells.text ? cells.text : "") : NULL;
+  strut_release(names.text);
+  strut_release(cells.text);
+  return before[0] && before[1];
+}
+
 static strut_status write_branches(point_work *self, bool partial) {
   const char *before[2]; /* headers and cells of the axes */
   char csv[64], json[64];
   const char *folder = strut_arena_format(self->arena, "%s/branches", self->options->directory);
-  if (!folder || !strut_follow_axes(self->plan, self->values, self->arena, before))
+  if (!folder || !list_axes(self->plan, self->values, self->arena, before))
     return strut_no_memory(&self->error, "");
   snprintf(csv, sizeof csv, "%09lld%s.csv", (long long)self->point, partial ? "-partial" : "");
   snprintf(json, sizeof json, "%09lld.json", (long long)self->point);
@@ -271,25 +291,6 @@ strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *
 
 enum { MOST_BLOCK = 1 << 28 };
 
-bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *values,
-                       strut_arena *arena, const char *before[2]) {
-  strut_buffer names = {0}, cells = {0};
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    strut_study_table_add_name(&names, &plan->columns[i]);
-    if (values[i].word)
-      strut_csv_add_text(&cells, "%s", values[i].word);
-    else
-      strut_csv_add_number(&cells, isfinite(values[i].number) ? values[i].number : (double)NAN);
-    strut_buffer_add(&cells, ",");
-  }
-  bool fine = !names.failed && !cells.failed;
-  before[0] = fine ? strut_arena_format(arena, "%s", names.text ? names.text : "") : NULL;
-  before[1] = fine ? strut_arena_format(arena, "%s", cells.text ? cells.text : "") : NULL;
-  strut_release(names.text);
-  strut_release(cells.text);
-  return before[0] && before[1];
-}
-
 /* The text of a point's file, in the arena; NULL where there is none, or no memory. */
 static char *read_branches(const char *directory, int64_t point, const char *ending,
                            strut_arena *arena) {
@@ -324,7 +325,7 @@ static strut_status write_header(FILE *to, const strut_sweep_plan *plan, bool pa
   const strut_study_value *values =
       strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *values);
   const char *before[2];
-  if (!none || !values || !strut_follow_axes(plan, values, arena, before))
+  if (!none || !values || !list_axes(plan, values, arena, before))
     return strut_no_memory(error, "");
   before[1] = "";
   none->name = strut_arena_format(arena, "%s", follow->over);

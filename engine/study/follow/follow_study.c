@@ -41,6 +41,11 @@ void strut_follow_note(strut_follow_result *result, const char *format, ...) {
   va_end(arguments);
 }
 
+/* A copy of a text that belongs to the result; NULL of NULL, or out of memory. */
+static char *copy_text(strut_follow_result *result, const char *text) {
+  return text ? strut_arena_format(&result->arena, "%s", text) : NULL;
+}
+
 /* The values of both parameters at one of the first. */
 #define VALUES_AT(SELF, VALUE) ((const double[2]){VALUE, (SELF)->o->second.value})
 
@@ -126,7 +131,7 @@ static strut_status open_system(follower *self, double value) {
   }
   if (status) return status;
   self->r->title =
-      strut_follow_text(self->r, system->setup.scene.name ? system->setup.scene.name : "model");
+      copy_text(self->r, system->setup.scene.name ? system->setup.scene.name : "model");
   return self->r->title ? STRUT_OK : strut_no_memory(self->error, "");
 }
 
@@ -307,10 +312,6 @@ static void push_motions(follower *self) {
   }
 }
 
-char *strut_follow_text(strut_follow_result *result, const char *text) {
-  return text ? strut_arena_format(&result->arena, "%s", text) : NULL;
-}
-
 strut_status strut_follow_make(const strut_follow_options *options, strut_follow_result *result,
                                strut_error *error) {
   *result = (strut_follow_result){.low = options->low, .high = options->high};
@@ -323,10 +324,10 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
                            .progress_context = options->progress_context}};
   result->second = options->second;
   result->shown = options->shown;
-  result->name = strut_follow_text(result, options->name);
-  result->unit = strut_follow_text(result, options->unit);
-  result->second.name = strut_follow_text(result, options->second.name);
-  result->second.unit = strut_follow_text(result, options->second.unit);
+  result->name = copy_text(result, options->name);
+  result->unit = copy_text(result, options->unit);
+  result->second.name = copy_text(result, options->second.name);
+  result->second.unit = copy_text(result, options->second.unit);
   bool kept = result->name && result->unit && !result->second.name == !options->second.name;
   strut_status status = kept ? STRUT_OK : strut_no_memory(error, "");
   for (size_t i = 0; i < options->start_count && !status; i++)

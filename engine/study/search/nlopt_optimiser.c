@@ -39,6 +39,7 @@ typedef struct nlopt_search {
   double *spread,
       *spread_values; /* (spread_count, dimension) evenly spread points; (spread_count) */
   size_t spread_count;
+  strut_arena arena;
 } nlopt_search;
 
 static const struct method_row {
@@ -109,17 +110,15 @@ static void conditions(unsigned m, double *result, unsigned n, const double *poi
 /* Bounds: what wraps may go on beyond them, where a method walks from a point. */
 static bool set_bounds(nlopt_search *self, bool global) {
   size_t n = self->task->dimension;
-  double *bound = strut_allocate(2 * n, sizeof *bound);
+  double *bound = strut_arena_allocate(&self->arena, 2 * n, sizeof *bound);
   if (!bound) return false;
   for (size_t i = 0; i < n; i++) {
     bool beyond = self->task->wraps[i] && !global;
     bound[i] = beyond ? self->best[i] - 1.0 : 0.0;
     bound[n + i] = beyond ? self->best[i] + 1.0 : 1.0;
   }
-  bool fine = nlopt_set_lower_bounds(self->opt, bound) >= 0 &&
-              nlopt_set_upper_bounds(self->opt, bound + n) >= 0;
-  strut_release(bound);
-  return fine;
+  return nlopt_set_lower_bounds(self->opt, bound) >= 0 &&
+         nlopt_set_upper_bounds(self->opt, bound + n) >= 0;
 }
 
 /* The population of a global method: the usual one, or less where evaluations are few. */
@@ -133,21 +132,18 @@ static unsigned population(const nlopt_search *self, strut_search_method method)
 static bool run(nlopt_search *self, strut_search_method method, double first_step, int64_t most) {
   const struct method_row *row = &rows[method];
   size_t n = self->task->dimension, m = self->task->conditions;
-  double value;
+  double value, *point, *tolerance;
   self->opt = nlopt_create(row->algorithm, (unsigned)n);
-  double *point = strut_allocate(n, sizeof *point);
-  bool fine = self->opt && point && set_bounds(self, row->global);
+  bool fine = self->opt && set_bounds(self, row->global) &&
+              STRUT_ALLOCATE(&self->arena, STRUT_NEW(point, n), STRUT_NEW(tolerance, m));
   self->asked = self->stuck = 0;
   self->most = most;
   if (fine) {
     memcpy(point, self->best, n * sizeof *point);
     nlopt_set_min_objective(self->opt, objective, self);
-    if (m) {
-      double *tolerance = strut_allocate(m, sizeof *tolerance);
-      fine = tolerance && nlopt_add_inequality_mconstraint(self->opt, (unsigned)m, conditions, self,
-                                                           tolerance) >= 0;
-      strut_release(tolerance);
-    }
+    if (m)
+      fine = nlopt_add_inequality_mconstraint(self->opt, (unsigned)m, conditions, self,
+                                              tolerance) >= 0;
     nlopt_set_xtol_abs1(self->opt, FINEST);
     if (!row->global) nlopt_set_initial_step1(self->opt, first_step);
     if (method == STRUT_SEARCH_CRS2 || method == STRUT_SEARCH_ISRES)
@@ -159,7 +155,6 @@ static bool run(nlopt_search *self, strut_search_method method, double first_ste
   }
   if (self->opt) nlopt_destroy(self->opt);
   self->opt = NULL;
-  strut_release(point);
   return fine;
 }
 
@@ -171,9 +166,9 @@ static bool spread_points(nlopt_search *self, double share) {
   size_t n = self->task->dimension;
   double usual = 20.0 * ((double)n + 1.0);
   int64_t count = (int64_t)fmax(fmin(usual, floor(share * (double)self->task->evaluations)), 1.0);
-  self->spread = strut_allocate((size_t)count * n, sizeof *self->spread);
-  self->spread_values = strut_allocate((size_t)count, sizeof *self->spread_values);
-  if (!self->spread || !self->spread_values) return false;
+  if (!STRUT_ALLOCATE(&self->arena, STRUT_NEW(self->spread, (size_t)count * n),
+                      STRUT_NEW(self->spread_values, count)))
+    return false;
   strut_search_spread_points(self->task, (size_t)count, self->spread);
   self->spread_count = (size_t)count;
   self->asked = count;
@@ -236,16 +231,14 @@ static bool descend(nlopt_search *self, const double *from, double first_step, i
 static bool descend_from_spread(nlopt_search *self) {
   size_t n = self->task->dimension, count = 0;
   const double *from[DESCENTS];
-  double *before = strut_allocate(n, sizeof *before);
+  double *before = strut_arena_allocate(&self->arena, n, sizeof *before);
   bool fine = before != NULL;
   while (count < DESCENTS && (from[count] = best_apart(self, from, count))) count++;
   double rest = (double)(self->task->evaluations - self->asked) * DESCENT_SHARE;
   int64_t most = (int64_t)fmax(ceil(rest / (double)(count ? count : 1)), 1.0);
   for (size_t i = 0; i < count && fine && !self->ended; i++)
     fine = descend(self, from[i], REFINED_STEP, most, before);
-  if (fine && !self->ended) fine = run(self, STRUT_SEARCH_SBPLX, LAST_STEP, INT64_MAX);
-  strut_release(before);
-  return fine;
+  return fine && (self->ended || run(self, STRUT_SEARCH_SBPLX, LAST_STEP, INT64_MAX));
 }
 
 /* Controlled random search, then a descent from the best point. */
@@ -259,22 +252,15 @@ bool strut_search_optimise_by_nlopt(const strut_search_task *task,
                                     const strut_search_asker *asker) {
   size_t n = task->dimension;
   nlopt_search s = {.task = task, .asker = asker, .least = HUGE_VAL};
-  double *block = strut_allocate(3 * n + task->conditions + 2, sizeof *block);
-  if (!block) return false;
-  s.best = block;
-  s.last = block + n;
-  s.answer = block + 2 * n;
-  s.broken = s.answer + n + 1;
-  memcpy(s.best, task->start, n * sizeof *block);
+  bool fine = STRUT_ALLOCATE(&s.arena, STRUT_NEW(s.best, n), STRUT_NEW(s.last, n),
+                             STRUT_NEW(s.answer, n + 1), STRUT_NEW(s.broken, task->conditions + 1));
+  if (fine) memcpy(s.best, task->start, n * sizeof *s.best);
   bool two = task->method == STRUT_SEARCH_CRS2, many = task->method == STRUT_SEARCH_MULTISTART;
-  bool fine = true;
-  if (two || many) fine = spread_points(&s, two ? SPREAD_SHARE : MULTISTART_SPREAD);
+  if (fine && (two || many)) fine = spread_points(&s, two ? SPREAD_SHARE : MULTISTART_SPREAD);
   if (fine && !s.ended)
     fine = two    ? search_and_descend(&s)
            : many ? descend_from_spread(&s)
                   : run(&s, task->method, FIRST_STEP, INT64_MAX);
-  strut_release(s.spread);
-  strut_release(s.spread_values);
-  strut_release(block);
+  strut_arena_free(&s.arena);
   return fine;
 }

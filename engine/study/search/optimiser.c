@@ -32,18 +32,19 @@ static bool look_at_grid(const strut_search_task *task, const strut_search_asker
     all *= task->counts[i];
   }
   const size_t count = (size_t)(all < task->evaluations ? all : task->evaluations);
-  double *points = strut_arena_allocate(&arena, count * n, sizeof *points);
-  double *values = strut_arena_allocate(&arena, count * (2 + task->conditions), sizeof *values);
-  for (size_t k = 0; points && k < count; k++, at = (at + 1) % all) {
+  double *points, *values;
+  bool fine = STRUT_ALLOCATE(&arena, STRUT_NEW(points, count * n),
+                             STRUT_NEW(values, count * (2 + task->conditions)));
+  for (size_t k = 0; fine && k < count; k++, at = (at + 1) % all) {
     int64_t rest = at;
     for (size_t i = 0; i < n; i++) {
       points[k * n + i] = ((double)(rest % task->counts[i]) + 0.5) / (double)task->counts[i];
       rest /= task->counts[i];
     }
   }
-  if (points && values) asker->ask(asker->context, count, points, values, values + 2 * count);
+  if (fine) asker->ask(asker->context, count, points, values, values + 2 * count);
   strut_arena_free(&arena);
-  return points && values;
+  return fine;
 }
 
 bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker) {
@@ -291,14 +292,9 @@ bool strut_search_optimise_by_nsga2(const strut_search_task *task,
   if (first < e.size) first = e.size;
   size_t most = first > 2 * e.size ? first : 2 * e.size;
   strut_arena arena = {0};
-  bool fine = true;
-  for (int k = 0; k < 2; k++) {
-    e.points[k] = strut_arena_allocate(&arena, most * e.n, sizeof(double));
-    e.values[k] = strut_arena_allocate(&arena, 2 * most, sizeof(double));
-    fine = fine && e.points[k] && e.values[k];
-  }
-  e.all = strut_arena_allocate(&arena, most, sizeof *e.all);
-  fine = fine && e.all;
+  bool fine = STRUT_NUMBERS(&arena, most * e.n, &e.points[0], &e.points[1]) &&
+              STRUT_NUMBERS(&arena, 2 * most, &e.values[0], &e.values[1]) &&
+              STRUT_ALLOCATE(&arena, STRUT_NEW(e.all, most));
   if (fine) strut_search_spread_points(task, first, e.points[0]);
   bool more = fine && asker->ask(asker->context, first, e.points[0], e.values[0], NULL);
   for (size_t count = first; more; count = 2 * e.size) {

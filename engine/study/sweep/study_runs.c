@@ -46,9 +46,9 @@ static strut_status read_values(const strut_sweep_plan *plan, const strut_study_
                                 int64_t point, opened_run *opened, bool *shown,
                                 strut_error *error) {
   size_t count = plan->axis_columns;
-  opened->values = strut_arena_allocate(&opened->arena, count + 1, sizeof *opened->values);
-  opened->texts = strut_arena_allocate(&opened->arena, count + 1, sizeof *opened->texts);
-  if (!opened->values || !opened->texts) return strut_no_memory(error, "while drawing");
+  if (!STRUT_ALLOCATE(&opened->arena, STRUT_NEW(opened->values, count + 1),
+                      STRUT_NEW(opened->texts, count + 1)))
+    return strut_no_memory(error, "while drawing");
   strut_grid_values(plan->study, point, opened->values);
   for (size_t i = 0; i < count; i++) {
     char number[STRUT_NUMBER_TEXT];

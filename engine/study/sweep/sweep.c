@@ -135,7 +135,8 @@ static bool next_point(strut_points *points, int64_t *point) {
   return false;
 }
 
-strut_status strut_points_run(strut_points *points, int64_t count) {
+/* Looks at `count` points. */
+static strut_status run_points(strut_points *points, int64_t count) {
   int threads = count < points->threads ? (int)count : points->threads;
   points->next = 0, points->count = count;
 #ifdef _OPENMP
@@ -156,7 +157,7 @@ strut_status strut_points_complete(strut_points *points, int64_t (*left)(void *c
     if (points->interrupt && *points->interrupt)
       return points->status = strut_fail(points->error, STRUT_INTERRUPTED, "interrupted");
     int64_t count = left(points->context);
-    if (count == 0 || strut_points_run(points, count) || left(points->context) == 0) break;
+    if (count == 0 || run_points(points, count) || left(points->context) == 0) break;
     nanosleep(&pause, NULL); /* others compute the rest; the claims of those that are killed end */
     if (pause.tv_nsec < LONGEST_PAUSE) pause.tv_nsec += pause.tv_nsec / 4;
   }
@@ -228,7 +229,7 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   if (options->wants) state->points = options->wanted, state->done = options->wanted_done;
   if (options->directory) strut_sweep_records_clear(options->directory);
   points.status = strut_points_open(&points, plan, options, &arena);
-  if (!points.status) strut_points_run(&points, strut_slots_description_of(slots)->count);
+  if (!points.status) run_points(&points, strut_slots_description_of(slots)->count);
   strut_points_close(&points);
   strut_arena_free(&arena);
   return strut_points_end(&points);

@@ -227,10 +227,8 @@ void strut_points_begin(strut_points *points);
 strut_status strut_points_open(strut_points *points, const strut_sweep_plan *plan,
                                const strut_sweep_options *options, strut_arena *arena);
 void strut_points_close(strut_points *points);
-/** Looks at `count` points. */
-strut_status strut_points_run(strut_points *points, int64_t count);
 /**
- * Does so until all have rows, and waits for those that other workers compute. left(context): how many are looked at
+ * Looks at points until all have rows, and waits for those that other workers compute. left(context): how many are looked at
  * next; 0: all have rows. STRUT_INTERRUPTED.
  */
 strut_status strut_points_complete(strut_points *points, int64_t (*left)(void *context));

@@ -226,7 +226,6 @@ static void free_models(tradeoff_study *study) {
     strut_model_free(study->models[i].model);
     strut_arena_free(&study->models[i].arena);
   }
-  strut_release(study->models);
 }
 
 /* The experiment of a point, cut to the periods that are wanted. */
@@ -277,12 +276,11 @@ static void prepare(tradeoff_study *study, size_t count) {
     tradeoff->measure = walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
   tradeoff->value_count = tradeoff->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
   size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
-  study->points = strut_tradeoff_allocate(study, count, sizeof *study->points);
-  study->scratch = strut_tradeoff_allocate(study, most, sizeof(double));
-  study->spare = strut_tradeoff_allocate(study, 2 * count, sizeof(double));
-  study->coarse_value = strut_tradeoff_allocate(study, most, sizeof(double));
-  study->models = strut_allocate(count * TRADEOFF_VARIANTS, sizeof *study->models);
-  if (!study->models) study->status = strut_no_memory(study->error, "");
+  if (!STRUT_ALLOCATE(&tradeoff->arena, STRUT_NEW(study->points, count),
+                      STRUT_NEW(study->scratch, most), STRUT_NEW(study->spare, 2 * count),
+                      STRUT_NEW(study->coarse_value, most),
+                      STRUT_NEW(study->models, count * TRADEOFF_VARIANTS)))
+    study->status = strut_no_memory(study->error, "");
   if (!study->status && !(strut_experiment_span(&study->setups[0]->experiment, scene).duration > 0))
     study->status = strut_fail(study->error, STRUT_USAGE,
                                "the scene has no run: add 'run' with a duration or periods");

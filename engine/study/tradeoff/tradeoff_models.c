@@ -24,16 +24,10 @@ static bool has_still_bars(const strut_scene *scene) {
   return any;
 }
 
-static bool has_friction(const strut_scene *scene, strut_friction_law law) {
-  for (size_t i = 0; i < scene->contact_count; i++)
-    if (scene->contacts[i].friction.law == law) return true;
-  return false;
-}
-
-static bool has_any_friction(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->contact_count; i++)
-    if (scene->contacts[i].friction.law != STRUT_FRICTION_NONE) return true;
-  return false;
+static size_t count_laws(const strut_scene *scene, strut_friction_law law) {
+  size_t count = 0;
+  for (size_t i = 0; i < scene->contact_count; i++) count += scene->contacts[i].friction.law == law;
+  return count;
 }
 
 /* Depth of a contact at rest if all contacts shared the weight equally [m]; 0 without gravity. */
@@ -65,7 +59,8 @@ static bool makes_sense(const strut_scene *scene, kind what) {
   if (what == RIGID) return has_still_bars(scene) && !scene->ground_count;
   if (what == GROUND)
     return scene->contact_count > 0 && !scene->ground_count && has_damped_ground(scene);
-  return has_any_friction(scene) && !has_friction(scene, law_of[what]);
+  bool rough = count_laws(scene, STRUT_FRICTION_NONE) < scene->contact_count;
+  return rough && !count_laws(scene, law_of[what]);
 }
 
 /* The regularisation speed for friction laws that need one [m/s]. */
@@ -181,7 +176,7 @@ bool strut_tradeoff_has_switches(const strut_scene *scene) {
 bool strut_tradeoff_can_run(const tradeoff_study *study, const strut_integrator *method,
                             int variant) {
   kind what = kind_of(study, variant);
-  bool own = has_friction(&study->setups[0]->scene, STRUT_FRICTION_COULOMB);
+  bool own = count_laws(&study->setups[0]->scene, STRUT_FRICTION_COULOMB);
   bool exact = own ? what <= GROUND : what == COULOMB;
   if (exact && !method->events) return false;
   return !method->events || strut_tradeoff_is_adaptive(method) ||
