@@ -243,8 +243,9 @@ static bool has_curves(const strut_analysis *analysis, size_t number) {
   return result->second.name && (result->curve_count || number != CURVES);
 }
 
-static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                          strut_error *error) {
+  size_t number = analysis->picture;
   bool curves = number == CURVES || (number == FIGURE && has_curves(analysis, CURVES));
   const strut_follow_result *result = result_of(analysis);
   strut_table table = {0};

@@ -32,7 +32,7 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
   const strut_analysis *analysis = &((const analysis_detail *)result->detail)->analysis;
   strut_plot plot;
   strut_status status = abi_plot_read(arguments, path, &plot);
-  return status == STRUT_OK ? analysis->kind->draw(analysis, &plot, 0, error) : status;
+  return status == STRUT_OK ? analysis->kind->draw(analysis, &plot, error) : status;
 }
 
 static strut_status compute_and_report(abi_call *call, const strutlib_scene *scene,
