@@ -32,7 +32,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(at), "at", "NAME,...", "configurations to start from (default: the start)"},
     {STRUT_FILLS(accuracy), "accuracy", "E",
      "relative error of velocities (default " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %)",
-     .low = DBL_MIN, .high = STRUT_FOLLOW_MOST_ACCURACY, .expected = "expects a value up to 10 %"},
+     .limits = STRUT_LIMITS_SHARE(STRUT_FOLLOW_MOST_ACCURACY)},
     {STRUT_FILLS_TEXT(integrator), "integrator", "NAME",
      "method, which must locate events (default: rk4-events, or else adaptive)",
      .words = STRUT_INTEGRATOR_WORDS},
