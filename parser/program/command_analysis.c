@@ -37,7 +37,8 @@ static strut_status write_file(strut_analysis *a, const strut_output_file *file,
   if (file->draw) {
     strut_plot own = file->width > 0.0 ? (strut_plot){.width = file->width} : *plot;
     own.path = strut_arena_format(&a->arena, "%s/%s", directory, name);
-    return own.path ? file->draw(a, &own, file->number + i, error) : strut_no_memory(error, "");
+    a->picture = file->number + i;
+    return own.path ? file->draw(a, &own, error) : strut_no_memory(error, "");
   }
   if (file->csv || file->list)
     return strut_file_write_block(
@@ -115,7 +116,8 @@ static strut_status compute(strut_analysis *a, const strut_arguments *arguments,
   strut_status status = arguments->command->report ? arguments->command->report(a, arguments, error)
                                                    : report(a, arguments, plot, error);
   if (!status && a->kind->warn) a->kind->warn(a, arguments->listener);
-  if (!status && plot->path) status = a->kind->draw(a, plot, 0, error);
+  a->picture = 0;
+  if (!status && plot->path) status = a->kind->draw(a, plot, error);
   if (!status && a->kind->verdict) status = a->kind->verdict(a, error);
   return computed ? computed : status;
 }

@@ -277,11 +277,12 @@ static bool is_compared(const strut_analysis *analysis, size_t number) {
 }
 
 /* All models, or one, counted from 1. */
-static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                          strut_error *error) {
   const strut_compare *result = result_of(analysis);
-  return number ? strut_compare_figure(plot, result, number - 1, 1, error)
-                : strut_compare_figure(plot, result, 0, result->count, error);
+  size_t one = analysis->picture;
+  return one ? strut_compare_figure(plot, result, one - 1, 1, error)
+             : strut_compare_figure(plot, result, 0, result->count, error);
 }
 
 static const strut_output_file files[] = {

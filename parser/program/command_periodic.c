@@ -32,7 +32,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(at), "at", "NAME,...", "configurations to start from (default: the start)"},
     {STRUT_FILLS(accuracy), "accuracy", "E",
      "relative error of velocities (default " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %)",
-     .low = DBL_MIN, .high = STRUT_FOLLOW_MOST_ACCURACY, .expected = "expects a value up to 10 %"},
+     .limits = STRUT_LIMITS_SHARE(STRUT_FOLLOW_MOST_ACCURACY)},
     {STRUT_FILLS_TEXT(integrator), "integrator", "NAME",
      "method, which must locate events (default: rk4-events, or else adaptive)",
      .words = STRUT_INTEGRATOR_WORDS},
@@ -243,8 +243,9 @@ static bool has_curves(const strut_analysis *analysis, size_t number) {
   return result->second.name && (result->curve_count || number != CURVES);
 }
 
-static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                          strut_error *error) {
+  size_t number = analysis->picture;
   bool curves = number == CURVES || (number == FIGURE && has_curves(analysis, CURVES));
   const strut_follow_result *result = result_of(analysis);
   strut_table table = {0};

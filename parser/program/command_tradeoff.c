@@ -173,9 +173,8 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                          strut_error *error) {
-  (void)number;
   return strut_tradeoff_figure(plot, analysis->found, error);
 }
 

@@ -170,7 +170,7 @@ TEST(options_are_checked_as_on_the_command_line) {
     const char *name, *value, *words;
   } wrong[] = {{"acuracy", "1 %", "did you mean 'accuracy'?"},
                {"accuracy", "3 m", "expects a number without unit"},
-               {"step", "0", "must be greater than 0"},
+               {"step", "0", "must be above zero"},
                {"integrator", "rk5", "did you mean 'rk4'?"},
                {"force", "perhaps", "expects yes or no"},
                {"channels", "position,colour", "not 'colour'"},

@@ -219,7 +219,7 @@ holds '.force_evaluations + .accuracy.check_evaluations < 900000' # finer runs w
 expect 5 run "$here/chaotic.yaml" --accuracy 0.2% --budget 1 --json
 holds '(.accuracy.kept | not) and .force_evaluations + .accuracy.check_evaluations < 1e6'
 holds '.accuracy.why | test("larger budget")'
-tells 1 "greater than 0" run "$here/chaotic.yaml" --accuracy 1% --budget 0
+tells 1 "above zero" run "$here/chaotic.yaml" --accuracy 1% --budget 0
 # What is measured is what is promised: a mass that a cable catches, m g + sqrt((m g)^2 + k m v^2).
 yaml catch.yaml <<'END'
 gravity: [0, -9.81]
@@ -422,7 +422,7 @@ shows 5 "contacts or laws switch too often to be followed in" run endless.yaml -
 
 # What makes no sense is refused.
 tells 1 "give either --accuracy, or --integrator and --step" run "$crawler" --accuracy 1% --integrator rk4
-tells 1 "above 0 and at most 20%" run "$crawler" --accuracy 150%
+tells 1 "must be at most 20 %, found 150 %" run "$crawler" --accuracy 150%
 tells 1 "leapfrog" run "$crawler" --integrator leapfrog
 tells 1 "periods" run "$here/hopper.yaml" --steady 1%
 tells 3 "largest stable step of verlet-events" run "$crawler" --integrator verlet-events --step "1 ms"

@@ -50,7 +50,7 @@ tells 1 "unknown option '--js'; did you mean '--json'?" run "$hopper" --js
 tells 1 "unknown option '--out'; did you mean '--output'?" run "$hopper" --out x
 tells 1 "did you mean '--friction-law', or of a parameter '--set friction=VALUE'?" run "$hopper" --friction 0.2
 tells 1 "unexpected argument 'Hz'; a value with a space is quoted: NAME='20 Hz'" run "$hopper" --set f=20 Hz
-tells 1 "--accuracy must be above 0 and at most 20%" run "$hopper" --accuracy 1
+tells 1 "--accuracy must be at most 20 %, found 100 %; 1 % is 0.01" run "$hopper" --accuracy 1
 tells 1 "unknown option '--film'; did you mean '--animate'?" run "$hopper" --film x.mp4
 tells 1 "unknown option '--movie'; 'strut run --animate FILE' makes films" sweep "$hopper" --movie=x.mp4
 tells 1 "unknown option '--out'; did you mean '--output'?" run "$hopper" --out=x

@@ -501,7 +501,7 @@ static const strut_option sweep_options[] = {
     {STRUT_FILLS(limit_evaluations), "limit_evaluations", "N",
      "force evaluations after which a point fails", .least = 1, .most = INT64_MAX / 16},
     {STRUT_FILLS(limit_time), "limit_time", "TIME", "time after which a point fails",
-     .measure = STRUT_MEASURE_TIME, .high = HUGE_VAL, .expected = "must not be below 0"},
+     .measure = STRUT_MEASURE_TIME, .limits = STRUT_LIMITS_NOT_NEGATIVE},
     {STRUT_FILLS(threads), "threads", "N", "number of threads (default automatic)", .least = 1,
      .most = 4096},
     {.table = strut_experiment_options},

@@ -27,7 +27,7 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
   const strut_analysis *analysis = result->detail;
   strut_plot plot;
   strut_status status = abi_plot_read(arguments, path, &plot);
-  return status == STRUT_OK ? analysis->kind->draw(analysis, &plot, 0, error) : status;
+  return status == STRUT_OK ? analysis->kind->draw(analysis, &plot, error) : status;
 }
 
 static strut_status open_setup(abi_call *call, bool compiled, strutlib_result *result) {

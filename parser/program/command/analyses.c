@@ -291,8 +291,7 @@ static void warn_of_equilibria(const strut_analysis *analysis, const strut_liste
 }
 
 static strut_status draw_equilibria(const strut_analysis *analysis, const strut_plot *plot,
-                                    size_t number, strut_error *error) {
-  (void)number;
+                                    strut_error *error) {
   if (analysis->result.equilibria.count == 0) return STRUT_OK;
   return strut_equilibria_figure(plot, analysis->model, &analysis->result.equilibria, error);
 }
@@ -330,8 +329,7 @@ static void warn_of_modes(const strut_analysis *analysis, const strut_listener *
 }
 
 static strut_status draw_modes(const strut_analysis *analysis, const strut_plot *plot,
-                               size_t number, strut_error *error) {
-  (void)number;
+                               strut_error *error) {
   return strut_modes_figure(plot, analysis->model, &analysis->result.modes, analysis->count, error);
 }
 
@@ -342,8 +340,7 @@ static void warn_of_waves(const strut_analysis *analysis, const strut_listener *
 }
 
 static strut_status draw_waves(const strut_analysis *analysis, const strut_plot *plot,
-                               size_t number, strut_error *error) {
-  (void)number;
+                               strut_error *error) {
   return strut_waves_figure(plot, analysis->model, &analysis->result.waves, error);
 }
 
@@ -406,8 +403,7 @@ static strut_status compute_rigidity(strut_analysis *analysis, strut_error *erro
 }
 
 static strut_status draw_rigidity(const strut_analysis *analysis, const strut_plot *plot,
-                                  size_t number, strut_error *error) {
-  (void)number;
+                                  strut_error *error) {
   const strut_rest_state *shape = &analysis->result.rigidity.shape;
   return strut_rigidity_figure(plot, analysis->model, shape->q, shape->name,
                                &analysis->result.rigidity.found, error);
@@ -450,9 +446,8 @@ static strut_status compute_form(strut_analysis *analysis, strut_error *error) {
   return strut_form_find(analysis->setup, &wanted, &analysis->result.form.found, error);
 }
 
-static strut_status draw_form(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+static strut_status draw_form(const strut_analysis *analysis, const strut_plot *plot,
                               strut_error *error) {
-  (void)number;
   strut_model *model = NULL;
   strut_status status = strut_model_compile(&analysis->setup->scene, &model, error);
   if (status == STRUT_OK)
@@ -523,9 +518,8 @@ static void warn_of_path(const strut_analysis *analysis, const strut_listener *l
     warned = warn_of_points(listener, scene, &path->branches[i]);
 }
 
-static strut_status draw_path(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+static strut_status draw_path(const strut_analysis *analysis, const strut_plot *plot,
                               strut_error *error) {
-  (void)number;
   return strut_path_figure(plot, analysis->model, &analysis->result.path, error);
 }
 

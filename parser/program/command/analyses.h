@@ -27,8 +27,7 @@ typedef struct strut_output_file {
   const strut_value_rows *rows; /* of a CSV; NULL: those of the result */
   char *(*csv)(const strut_analysis *analysis); /* of a CSV: its text, instead of these */
   /** Of a picture: draws it. */
-  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, size_t number,
-                       strut_error *error);
+  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, strut_error *error);
   size_t number, most; /* what it draws; of numbered pictures the first, and how many at most */
   double width;        /* of a picture [pt]; 0: as --plot has it */
   bool (*there)(const strut_analysis *analysis, size_t number); /* NULL: always */
@@ -48,9 +47,8 @@ struct strut_analysis_kind {
   strut_status (*verdict)(const strut_analysis *analysis, strut_error *error);
   /** Tells the listener what is doubtful in the result. May be NULL. */
   void (*warn)(const strut_analysis *analysis, const strut_listener *listener);
-  /** Draws the figure of --plot, number 0. */
-  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, size_t number,
-                       strut_error *error);
+  /** Draws the figure of --plot, picture 0. */
+  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, strut_error *error);
   void (*release)(strut_analysis *analysis); /* may be NULL */
 };
 
@@ -73,6 +71,7 @@ struct strut_analysis {
   const void *found;        /* what the rows are of */
   const strut_scene *scene; /* of the result, or NULL */
   size_t count;             /* of modes, as asked for; 0: as many as are usual */
+  size_t picture;           /* the number of what is drawn */
   bool partial;             /* what failed has found something all the same */
   strut_arena arena;
   union {

@@ -99,11 +99,13 @@ strut_status strut_quantity_read(const strut_arguments *arguments, const char *n
 static strut_status read_number(const strut_option *option, const strut_arguments *arguments,
                                 strut_given_number *to) {
   const double low = option->low, high = option->high;
+  char fault[STRUT_LIMITS_TEXT];
   strut_status status = strut_quantity_read(arguments, option->name, to->text,
                                             strut_measure_dimension(option->measure), &to->value);
-  if (status || low == high || (to->value >= low && to->value <= high)) return status;
-  if (option->expected)
-    return strut_usage_error(arguments, "--%s %s", option->name, option->expected);
+  if (status) return status;
+  if (strut_limits_fault(option->limits, to->value, fault))
+    return strut_usage_error(arguments, "--%s %s", option->name, fault);
+  if (low == high || (to->value >= low && to->value <= high)) return STRUT_OK;
   return strut_usage_error(arguments, "--%s expects a value from %g to %g, not '%s'", option->name,
                            low, high, to->text);
 }

@@ -2,7 +2,6 @@
 /** Commands and the options that they are called with, from the command line or by the library. */
 #pragma once
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -126,8 +125,9 @@ typedef struct strut_option {
   char letter;                      /* or 0 */
   bool of_figure;                   /* needs --plot */
   strut_measure measure;            /* of a number */
-  double low, high;                 /* range of a number [SI]; both 0: any */
-  const char *expected;             /* what messages say of another value; NULL: the range */
+  strut_key_limits limits;          /* of a number [SI] */
+  double low, high;                 /* its ends, too; both 0: any */
+  const char *expected;             /* of a range, what messages say */
   int64_t least, most;              /* range of a whole number */
   const char *words;                /* "bar|cable": one of them; of a text, what completes it */
   int key;                          /* of the language, whose words they are; 0: none */
@@ -186,10 +186,8 @@ typedef struct strut_command {
 } strut_command;
 
 /* Ranges of numbers. */
-#define STRUT_ABOVE_ZERO .low = DBL_MIN, .high = HUGE_VAL, .expected = "must be greater than 0"
-#define STRUT_ACCURACY_RANGE                                                                       \
-  .low = DBL_MIN, .high = STRUT_MOST_ACCURACY,                                                     \
-  .expected = "must be above 0 and at most 20%; 1% is 0.01"
+#define STRUT_ABOVE_ZERO .limits = STRUT_LIMITS_ABOVE_ZERO
+#define STRUT_ACCURACY_RANGE .limits = STRUT_LIMITS_SHARE(STRUT_MOST_ACCURACY)
 
 /** The i-th row of a table (or NULL), those of its tables included; NULL after the last. */
 const strut_option *strut_option_row(const strut_option *table, size_t i);
