@@ -243,8 +243,11 @@ const char *strut_word_at(const char *words, int i, char *buffer, size_t size) {
     words += strcspn(words, "|");
     if (*words) words++;
   }
+  size_t length = strcspn(words, "|");
   if (!*words) return NULL;
-  snprintf(buffer, size, "%.*s", (int)strcspn(words, "|"), words);
+  if (length >= size) length = size - 1;
+  memcpy(buffer, words, length);
+  buffer[length] = '\0';
   return buffer;
 }
 
