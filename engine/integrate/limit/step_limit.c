@@ -29,9 +29,9 @@ double strut_rk4_limit(double re, double im) {
   if (re > 0) re = 0, size = fabs(im); /* a motion that grows by itself says nothing of the step */
   if (!(size > 0)) return HUGE_VAL;
   double x = re / size, y = im / size;
-  double inside = 0.0, outside = 3.5; /* RK4's region lies within |z| < 3.5 */
-  for (double r = 0.05; r < 3.5; r += 0.05) {
-    if (growth(r * x, r * y) > 1.0 + 1e-12) {
+  double inside = 0.0, outside = 3.5;         /* RK4's region lies within |z| < 3.5 */
+  for (double r = 0.05; r < 3.5; r += 0.05) { /* whatever the direction, it is left beyond 2.6 */
+    if (r > 2.6 && growth(r * x, r * y) > 1.0 + 1e-12) {
       outside = r;
       break;
     }
@@ -39,6 +39,7 @@ double strut_rk4_limit(double re, double im) {
   }
   for (int i = 0; i < 60; i++) {
     double middle = 0.5 * (inside + outside);
+    if (middle == inside || middle == outside) break;
     if (growth(middle * x, middle * y) > 1.0 + 1e-12)
       outside = middle;
     else
