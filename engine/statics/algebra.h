@@ -27,7 +27,7 @@
  */
 STRUT_API bool strut_eigen(double *matrix, int32_t n, double *value, double *work);
 
-/** The same with values ascending: vector (n, n) has the unit vector of value i in row i; equal values keep their order. */
+/** The same with values ascending, equal ones in their order; vector (n, n) has the unit vector of value i in row i. */
 bool strut_eigen_ascending(double *matrix, int32_t n, double *value, double *vector);
 
 /**

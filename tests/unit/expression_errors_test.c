@@ -71,6 +71,7 @@ TEST(wrong_dimensions_are_named) {
   expect_error("sin(1 m)", 0, 8, "'sin' takes an angle, got a length");
   expect_error("sin(1 Hz * (1 s) * 1 kg)", 0, 24, "'sin' takes an angle, got a mass");
   expect_error("exp(1 deg)", 0, 10, "'exp' takes a number without unit, got an angle");
+  expect_error("floor(2 mm)", 0, 11, "'floor' takes a number without unit, got a length");
   expect_error("asin(1 N m s)", 0, 13, "'asin' takes a number without unit, got kg m^2 s^-1");
   expect_error("(1 m)^500", 0, 9, "the power of a unit is too high");
   expect_error("sin(1, 2)", 0, 9, "'sin' takes 1 argument, got 2");
@@ -83,12 +84,14 @@ TEST(results_are_finite) {
   expect_error("2 + 1/(2 - 2)", 4, 9, "division by zero");
   expect_error("sqrt(-1)", 0, 8, "the result of 'sqrt' is not a real number");
   expect_error("log(0)", 0, 6, "the result of 'log' is not finite");
+  expect_error("log(-1)", 0, 7, "the result of 'log' is not a real number");
   expect_error("asin(2)", 0, 7, "the result of 'asin' is not a real number");
   expect_error("exp(1000)", 0, 9, "the result of 'exp' is not finite");
   expect_error("1e200*1e200", 0, 11, "the result of '*' is not finite");
   expect_error("1e308 + 1e308", 0, 13, "the result of '+' is not finite");
   expect_error("(-8)^0.5", 0, 8, "the result of '^' is not a real number");
   expect_error("0^-1", 0, 4, "the result of '^' is not finite");
+  expect_error("10^400", 0, 6, "the result of '^' is not finite");
 }
 
 TEST(syntax_is_strict) {

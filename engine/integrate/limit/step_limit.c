@@ -30,7 +30,7 @@ double strut_rk4_limit(double re, double im) {
   if (!(size > 0)) return HUGE_VAL;
   double x = re / size, y = im / size;
   double inside = 0.0, outside = 3.5;         /* RK4's region lies within |z| < 3.5 */
-  for (double r = 0.05; r < 3.5; r += 0.05) { /* whatever the direction, it is left beyond 2.6 */
+  for (double r = 0.05; r < 3.5; r += 0.05) { /* and holds |z| < 2.6 */
     if (r > 2.6 && growth(r * x, r * y) > 1.0 + 1e-12) {
       outside = r;
       break;

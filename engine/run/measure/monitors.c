@@ -103,29 +103,30 @@ static void improve_motion(const strut_model *model, strut_step_limit_monitor *m
   set->strength = weight > 0.0 ? work / weight : 0.0;
 }
 
+/* Where a method has implicit dampers of the ground, its steps are refined while the ground is touched. */
+static strut_closed closed_in(const strut_step_limit_monitor *monitor) {
+  return monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
+}
+
 /* One step of the power iteration of all sets. */
 static void iterate_power(const strut_model *model, const strut_state *state,
                           strut_step_limit_monitor *monitor) {
-  /* implicit ground dampers: steps are refined while the ground is touched */
-  strut_closed closed =
-      monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   product to[2];
   for (int i = 0; i < monitor->count; i++) {
     const strut_monitored_set *set = &monitor->set[i];
     to[i] = (product){set->motion, set->image, monitor->step * monitor->step * set->stiff,
                       monitor->step * set->damp};
   }
-  apply_forces(model, state, closed, to, monitor->count);
+  apply_forces(model, state, closed_in(monitor), to, monitor->count);
   for (int i = 0; i < monitor->count; i++) improve_motion(model, monitor, &monitor->set[i]);
 }
 
 /* Step limit of a shape; HUGE_VAL where memory is out. */
 static double find_limit(const strut_model *model, const strut_step_limit_monitor *monitor,
                          const double *positions, const double *rest) {
-  strut_closed closed =
-      monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_step_limit limit;
-  if (strut_step_limit_at_shape(model, positions, rest, closed, &limit, NULL)) return HUGE_VAL;
+  if (strut_step_limit_at_shape(model, positions, rest, closed_in(monitor), &limit, NULL))
+    return HUGE_VAL;
   return limit.of[monitor->method->region];
 }
 

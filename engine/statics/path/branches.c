@@ -135,7 +135,7 @@ static double passing_distance(const strut_path_walk *walk, const double *unknow
   return least / length;
 }
 
-/* Ends the branch, which begins at `origin`, at a bifurcation that its last step has passed: there it has been walked. */
+/* Ends the branch, which begins at `origin`, at a known bifurcation that its last step has passed. */
 static bool join_fork(strut_path_walk *walk, const strut_path_fork *origin) {
   for (size_t k = 0; k < walk->forks.count; k++) {
     strut_path_fork *fork = &walk->forks.fork[k];

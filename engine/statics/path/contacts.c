@@ -341,8 +341,8 @@ static void change_facet(strut_path_system *system, int32_t i, double *row) {
 }
 
 /*
- * Goes on from walk->y along the row, or on if that is zero, and reports what happened there and, unless it is within
- * `least`, the jump of the parameter from a value. False: no tangent leads on.
+ * Continues from walk->y along the row, or as before where the row is zero. Reports what happened there, and by how much
+ * the parameter has jumped from a value, unless by `least` or less. False: there is no tangent.
  */
 static bool finish_jump(strut_path_walk *walk, const double *row, strut_path_event_kind kind,
                         int32_t index, double from, double least, const char *what) {

@@ -136,7 +136,7 @@ static double half_of(const fitting *self, size_t i) {
   return sqrt(self->rise * self->spectrum.covariance[i * self->layout->parameters + i]);
 }
 
-/* Goes on by steps of each parameter, within the box. */
+/* Adds a step to each parameter, but stays in the box. */
 static void step_by(const fitting *self, const double *step, place *to) {
   for (size_t j = 0; j < self->layout->parameters; j++)
     to->at[j] = fmin(fmax(to->at[j] + step[j], self->layout->low[j]), self->layout->high[j]);

@@ -140,7 +140,7 @@ typedef struct abi_array {
 /** Row by row: the last index runs first. */
 abi_array abi_array_of(const char *name, const char *unit, const double *data, int dimensions,
                        const size_t *shape);
-/** Shows an array; 1, or 0 where there is none or an argument is NULL. */
+/** Fills in where an array is and its shape. Returns 0 if there is no array or an argument is NULL, else 1. */
 int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
                    size_t *stride);
 

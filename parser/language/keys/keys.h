@@ -24,9 +24,9 @@ typedef enum strut_section {
 
 /* clang-format off */
 /**
- * The types of values, X(TYPE, shape, least, most, schema, what messages expect, what the reference says): whether the value is a scalar or the name of
- * one (SCALAR), a list with so many items (LIST), a mapping (MAP), or one of several; ANY where its reader reports it. The schema says that in
- * the words of parser/program/command/schema.c.
+ * The types of values, X(TYPE, shape, least, most, schema, what messages expect, what the reference says): whether
+ * the value is a scalar or the name of one (SCALAR), a list with so many items (LIST), a mapping (MAP), or one of
+ * several; ANY where its reader reports it. The schema says the same in the letters of parser/program/command/schema.c.
  * What messages expect is NULL where it depends on the key (keys.c).
  */
 #define STRUT_KEY_TYPES(X) \

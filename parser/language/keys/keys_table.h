@@ -330,11 +330,14 @@
   X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kicks the stable motions at the values of `at`, to find how far they may be pushed.")
 
 /**
- * Keys that go together, X(section, given, rule, keys, message): where a mapping has one of the keys `given` ("" in any case), it
- *   NEEDS   one of the alternatives, each a key or several joined by +; ONLY: and no other of all these. Reported at the thing's name;
+ * Keys that go together, X(section, given, rule, keys, message): where a mapping has one of the keys `given`, or in any
+ * case if that is "", it
+ *   NEEDS   one of the alternatives, each a key or several joined by +. Reported at the thing's name;
+ *   ONLY    likewise, and no other of all these keys;
  *   WANTS   likewise, reported at the key that is given;
  *   FORBIDS each of the keys, where it stands.
- * In a message %o is who the mapping belongs to, %k the key that must not be there, %g the key that is given, and %v its value.
+ * In a message %o is who the mapping belongs to, %k the key that must not be there, %g the key that is given, and %v its
+ * value.
  */
 #define STRUT_KEY_RULES(X) \
   X(COLLISION, "nodes|members|between", FORBIDS, "node", "%o names a node beside a pair, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' with two members, or 'between'") \

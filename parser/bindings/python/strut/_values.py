@@ -321,7 +321,7 @@ def from_words(value: Any, path: Sequence[str]) -> Any:
         if inner:
             names = (".".join(rest[:i]) for i in range(len(rest), 0, -1))  # names may have dots
             name = next((name for name in names if name in at), None)
-            return None if name is None else walk(at[name], rest[name.count(".") + 1 :])
+            return walk(at[name], rest[1 + name.count(".") :]) if name is not None else None
         return None if rest or isinstance(at, (str, bool)) else at
 
     nested = walk(value, path)
